@@ -212,6 +212,11 @@ def test_options_that_do_not_fit_are_refused(capsys: pytest.CaptureFixture[str])
     for arguments, said in (
         (["count", "a.npy", "--id", "x"], "are for --each"),
         (["count", "a.npy", "-o", "x.csv"], "are for --each"),
+        (["count", "a.bed", "a.bed", "--left-id", "chrom"], "are for --each"),
+        (["count", "a.npy", "--each", "--threads", "2"], "--each counts on one thread"),
+        (["count", "a.npy", "--workers", "0"], "--workers is for --memory-limit"),
+        (["pairs", "a.npy", "--spill", "x"], "--spill is for --memory-limit"),
+        (["join", "a.npy", "a.npy", "--overwrite"], "--overwrite is for --memory-limit"),
         (["join", "a.npy", "a.npy", "--rows"], "a.npy has no named columns: leave out --rows"),
         (["join", "a.bed", "a.bed", "--rows", "--id", "chrom"], "pass --id or --rows"),
         (["join", "a.npy", "a.npy", "--how", "semi", "--measure", "size"], "leave out --measure"),

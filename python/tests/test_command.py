@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import gzip
 import importlib
 import io
@@ -122,6 +123,51 @@ def test_times_are_intervals() -> None:
     times = {name: arrow.array(column, arrow.timestamp("ns")) for name, column in (("start", [0, 5]), ("end", [5, 9]))}
     importlib.import_module("pyarrow.parquet").write_table(arrow.table(times), "a.parquet")
     assert run("count", "a.parquet") == "1\n" and run("count", "a.parquet", "--closed", "left") == "0\n"
+
+
+def test_times_are_written_as_in_the_file() -> None:
+    pandas = pytest.importorskip("pandas")
+    arrow = pytest.importorskip("pyarrow.parquet")
+    first = pandas.Timestamp("2024-01-01")
+    for unit, end, text in (("us", first, ""), ("ns", first, ""), ("ns", first + pandas.Timedelta(1), ".000000001")):
+        frame = pandas.DataFrame(
+            {"start": [first, first], "end": [end, end + pandas.Timedelta("2D")], "n": [None, end]}
+        )
+        frame = frame.astype(f"M8[{unit}]")
+        frame.to_parquet("a.parquet")
+        lines = ["a_start,a_end,a_n,b_start,b_end,b_n"]
+        lines += [f"2024-01-01 00:00:00,2024-01-01 00:00:00{text},,2024-01-01 00:00:00,"]
+        lines[1] += f"2024-01-03 00:00:00{text},2024-01-01 00:00:00{text}"
+        assert run("pairs", "a.parquet", "--rows").splitlines() == lines
+        assert run("merge", "a.parquet").splitlines()[1] == f"2024-01-01 00:00:00,2024-01-03 00:00:00{text},2"
+        assert run("pairs", "a.parquet", "--measure", "size").splitlines()[1] in (
+            "0,1,0:00:00", "0,1,0:00:00.000000001"
+        )  # fmt: skip
+        # With a zone, in UTC; where columns have types, as it is.
+        zoned = frame.apply(lambda column: column.dt.tz_localize("UTC").dt.tz_convert("Asia/Tokyo"))
+        zoned.to_parquet("z.parquet")
+        wanted = [lines[0], ",".join(cell and f"{cell}Z" for cell in lines[1].split(","))]
+        assert run("pairs", "z.parquet", "--rows").splitlines() == wanted
+        run("join", "z.parquet", "z.parquet", "--how", "left", "--left-id", "start,n", "-o", "p.parquet")
+        found = arrow.read_table("p.parquet")
+        assert found.schema.field("a_start").type == arrow.read_table("z.parquet").schema.field("start").type
+        assert found.column("a_n").null_count == 2
+        (zoned + pandas.Timedelta("90D")).to_parquet("far.parquet")
+        run("join", "z.parquet", "far.parquet", "--how", "left", "--id", "end", "-o", "p.parquet")
+        far = arrow.read_table("p.parquet").column("b")
+        assert str(far.type) == f"timestamp[{unit}, tz=Asia/Tokyo]" and far.null_count == 2
+
+
+def test_a_column_of_lists_is_written_as_json() -> None:
+    arrow = pytest.importorskip("pyarrow")
+    parquet = importlib.import_module("pyarrow.parquet")
+    boxes = [[0.0, 0, 2, 2], [1.0, 1, 3, 3]]
+    for more in ({"a": [[1], [2, 3]]}, {"a": [[1, 2], None]}, {"a": [{"b": 1}, {"b": 2}]}):
+        parquet.write_table(arrow.table({"bbox": boxes, **more}), "a.parquet")
+        rows = list(csv.reader(run("pairs", "a.parquet", "--rows").splitlines()))[1]
+        assert [json.loads(cell) if cell else None for cell in rows] == [boxes[0], more["a"][0], boxes[1], more["a"][1]]
+        run("pairs", "a.parquet", "--rows", "-o", "p.arrow")
+        assert arrow.ipc.open_file("p.arrow").read_all().column("b_a").to_pylist() == more["a"][1:]
 
 
 @pytest.mark.parametrize("name", ["p.csv", "p.tsv", "p.npy", "p.parquet", "p.arrow", "p.feather"])

@@ -339,6 +339,15 @@ def test_missing_and_damaged_files_and_wrong_columns_are_named() -> None:
         sap.find_pairs_between("d.parquet", "g.parquet", cells=2)
 
 
+@pytest.mark.parametrize("dtype", ["Int64", "string", "object"])
+def test_a_missing_id_of_a_collection_is_named(dtype: str) -> None:
+    ids = pandas.array([3, None] if dtype == "Int64" else ["a", float("nan") if dtype == "object" else None], dtype)
+    frame = dask.dataframe.from_pandas(pandas.DataFrame({"start": [0, 1], "end": [5, 6], "name": ids}), npartitions=1)
+    for lazy in (sap.find_pairs(frame, ids="name"), sap.find_pairs_between(frame, frame, ids="name")):
+        with pytest.raises(sap.DatasetError, match=r"row 1 \(the first is 0\): column name has no id"):
+            lazy.compute()
+
+
 def test_wrong_arguments_are_refused() -> None:
     write("a.parquet")
     with pytest.raises(TypeError, match=r"sweep_and_prune.find_pairs takes arrays"):

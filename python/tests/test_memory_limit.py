@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import fcntl
 import gzip
 import os
 import re
@@ -13,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sweep_and_prune import _tables, count_pairs_between
+from sweep_and_prune import _tables, count_pairs_between, find_pairs
 from sweep_and_prune._command import main
 
 pytest.importorskip("distributed")
@@ -165,7 +166,8 @@ def test_a_run_that_was_interrupted_uses_its_files_again(monkeypatch: pytest.Mon
     with monkeypatch.context() as changed, pytest.raises(KeyboardInterrupt):
         changed.setattr("sweep_and_prune.dask.run", interrupted)
         sap.find_pairs("a.csv", **given)
-    assert sorted(os.listdir("out.boxes")) == ["0.parquet", "_boxes.json"]
+    assert sorted(os.listdir("out.boxes")) == ["0.parquet", "_boxes.json", "lock"]
+    Path(f"out.boxes/1.parquet.{'0' * 32}.part").write_text("what was written when it was killed")
     with monkeypatch.context() as changed:
         changed.setattr(plain, "read_parts", None)
         found = sap.find_pairs("a.csv", **given).compute()
@@ -182,6 +184,35 @@ def test_other_files_beside_the_pairs_are_left_alone() -> None:
     with pytest.raises(sap.DatasetError, match="has other files"):
         sap.find_pairs("a.csv", by="chrom", out="out", workers=0)
     assert os.listdir("out.boxes") == ["mine.txt"]
+    os.rename("out.boxes/mine.txt", "out.boxes/0.parquet")
+    with pytest.raises(sap.DatasetError, match="has other files"):
+        sap.find_pairs("a.csv", by="chrom", out="out", workers=0)
+    assert Path("out.boxes/0.parquet").read_text() == "mine"
+    pyarrow.parquet.write_table(pyarrow.table({"start": [0], "end": [1]}), "out.boxes/0.parquet")
+    with pytest.raises(ValueError, match="has boxes and is in out"):
+        sap.find_pairs("out.boxes/0.parquet", out="out", workers=0)
+
+
+def test_two_runs_do_not_share_a_folder() -> None:
+    write_files(np.random.default_rng(1), "a")
+    Path("out.boxes").mkdir()
+    with open("out.boxes/lock", "w") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        with pytest.raises(sap.DatasetError, match="in use by another run"):
+            sap.find_pairs("a.csv", by="chrom", out="out", workers=0)
+    sap.find_pairs("a.csv", by="chrom", out="out", workers=0)
+    assert not Path("out.boxes").exists()
+
+
+def test_groups_of_floating_point_are_equal_as_in_memory() -> None:
+    nan = float("nan")
+    for groups in ([0.0, -0.0, 1.0, 1.0], [None, nan, 1.0, 1.0], [nan, None, 2.0, None], [0.0, 1.0, -0.0, 1.0]):
+        table = pyarrow.table({"start": [0.0] * 4, "end": [1.0] * 4, "g": pyarrow.array(groups), "h": [7, 7, 8, 8]})
+        pyarrow.parquet.write_table(table, "a.parquet")
+        for by in ("g", ["g", "h"], ["h", "g"]):
+            wanted = find_pairs(table, by=by)
+            found = sap.find_pairs("a.parquet", by=by, out=f"out-{len(list(Path().iterdir()))}", workers=0).compute()
+            assert np.array_equal(found.to_numpy(), wanted), (groups, by)
 
 
 def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:

@@ -321,7 +321,7 @@ def _taken(column: Column, rows: NDArray[Any]) -> Column:
 def _of_objects(items: list[Any]) -> Column:
     """A column of Python's objects: exact numbers or times if all are, or else the objects themselves."""
     never_missing = set(map(type, items)) <= {int, str, bool, bytes}
-    missing = np.zeros(0, bool) if never_missing else np.fromiter(map(_is_missing, items), bool, len(items))
+    missing = np.zeros(0, bool) if never_missing else np.fromiter(map(is_missing_value, items), bool, len(items))
     present = [item for item, is_none in zip(items, missing.tolist()) if not is_none] if missing.any() else items
     found = _exact_numbers(present) or _exact_times(present) or Column(_objects(present))
     if len(present) == len(items):
@@ -338,7 +338,7 @@ def _objects(items: Sequence[Any]) -> NDArray[Any]:
     return array
 
 
-def _is_missing(item: Any) -> bool:
+def is_missing_value(item: Any) -> bool:
     """Whether it is None, NaN, NaT or NA."""
     if item is None or type(item).__name__ == "NAType":
         return True

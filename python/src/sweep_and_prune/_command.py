@@ -37,7 +37,7 @@ from ._pairs import (
 from ._prepare import is_missing, refuse_inverted
 from ._progress import ProgressBar
 from ._signals import end_at_once, end_by_signals, held_back, remove_unfinished, signal_status
-from ._tables import FORMATS, READABLE, Source, columns_of_groups, is_text, kind_of_file, read
+from ._tables import FORMATS, READABLE, Source, Zoned, columns_of_groups, is_text, kind_of_file, read
 from ._text import GENOMIC, Cells
 from ._writers import WRITABLE, kind_of, writer
 
@@ -219,9 +219,9 @@ _boxes = _together(
     click.option(
         "--margin", "--distance", "margin", type=float, default=0, help="Boxes within this distance pair, too."
     ),
-    click.option("--threads", type=int, default=1, metavar="N", help="-1 for one on each processor."),
     click.option("--quiet", is_flag=True, help="Show no progress."),
 )
+_threads = click.option("--threads", type=int, default=1, metavar="N", help="-1 for one on each processor.")
 _destination = _together(
     click.option("-o", "--output", metavar="FILE", help="Where to write; standard output by default."),
     click.option(
@@ -285,7 +285,7 @@ def _file(name: str) -> Callable[[_Function], _Function]:
 
 @sap.command()
 @_file("file")
-@_together(_boxes, _wrap, _overlap, _output, _disk)
+@_together(_boxes, _threads, _wrap, _overlap, _output, _disk)
 def pairs(file: str, **options: Any) -> None:
     """Writes all pairs of overlapping boxes of a file."""
     _write_pairs(Options(files=[file], **options))
@@ -300,7 +300,7 @@ def pairs(file: str, **options: Any) -> None:
     default="inner",
     help="left, right: also the boxes of that file without a pair. semi, anti: the boxes of A with any pair, or none.",
 )
-@_together(_boxes, _wrap, _sides, _overlap, _output, _disk)
+@_together(_boxes, _threads, _wrap, _sides, _overlap, _output, _disk)
 def join(a: str, b: str, **options: Any) -> None:
     """Writes all pairs of a box of one file and a box of another.
 
@@ -313,12 +313,17 @@ def join(a: str, b: str, **options: Any) -> None:
 @_file("a")
 @click.argument("b", type=click.Path(allow_dash=True), required=False)
 @click.option("--each", is_flag=True, help="Write a count for each box of A.")
-@_together(_boxes, _wrap, _sides, _output, _disk)
+@_together(_boxes, _threads, _wrap, _sides, _output, _disk)
 def count(a: str, b: str | None, **options: Any) -> None:
     """Counts the pairs of a file, or of two."""
     given = Options(files=[a] if b is None else [a, b], **options)
-    if not given.each and (given.output or given.to or given.id or given.rows):
-        raise FileError("--output, --to, --id and --rows are for --each: without it, the count is printed")
+    if not given.each and any((given.output, given.to, given.id, given.rows, given.left_id, given.right_id)):
+        raise FileError(
+            "--output, --to, --id, --left-id, --right-id and --rows are for --each: without it, the count is printed"
+        )
+    if given.each and given.threads != 1:
+        raise FileError("--each counts on one thread: leave out --threads")
+    _refuse_options_of_disk(given)
     if given.each and given.memory_limit is None:
         _write_answers(given, lambda sets, search: [("count", count_overlaps(*sets, **search))])
     elif given.memory_limit is not None:
@@ -406,7 +411,7 @@ def nearest(a: str, b: str, **options: Any) -> None:
 
 @sap.command()
 @_file("file")
-@_boxes
+@_together(_boxes, _threads)
 def stats(file: str, **options: Any) -> None:
     """Describes boxes: extents, sizes, and pairs of each box."""
     given = Options(files=[file], **options)
@@ -416,7 +421,7 @@ def stats(file: str, **options: Any) -> None:
 
 @sap.command()
 @_file("file")
-@_boxes
+@_together(_boxes, _threads)
 @click.option("-o", "--output", metavar="FILE", required=True, help=".svg, .png or .pdf.")
 @click.option("--pairs", is_flag=True, help="Connect the centers of overlapping boxes.")
 def plot(file: str, **options: Any) -> None:
@@ -607,6 +612,7 @@ def _chunks(
 
 def _write_pairs(options: Options) -> None:
     how = getattr(options, "how", "inner")
+    _refuse_options_of_disk(options)
     if options.memory_limit is not None:
         with _from_disk(options, to=options.to) as (dask, search):
             if options.output is None:
@@ -702,9 +708,7 @@ def _with_alone(options: Options, kept: int, sources: list[Source], found: _Foun
     is_pair = (rows[0] >= 0) & (rows[1] >= 0)
     for name, values in found.columns(np.stack(rows, axis=1)[is_pair]):
         if not is_pair.all():
-            filled = np.full(len(is_pair), None, object)
-            filled[is_pair] = values
-            values = filled
+            values = _filled(values, is_pair)
         columns.append((name, values))
     return columns
 
@@ -770,13 +774,21 @@ class _Labels:
         ]
 
 
-def _taken(values: Any, rows: NDArray[Any]) -> NDArray[Any]:
+def _taken(values: Any, rows: NDArray[Any]) -> Any:
     is_there = rows >= 0
+    if isinstance(values, Zoned):
+        return values[rows]
     if is_there.all():
         return rows if values is None else np.asarray(values[rows])
-    taken = np.full(len(rows), None, object)
-    taken[is_there] = rows[is_there] if values is None else values[rows[is_there]]
-    return taken
+    return _filled(rows[is_there] if values is None else values[rows[is_there]], is_there)
+
+
+def _filled(values: NDArray[Any], is_there: NDArray[np.bool_]) -> NDArray[Any]:
+    """Values where there are some, and none elsewhere."""
+    has_missing = values.dtype.kind in "mM"
+    filled = np.full(len(is_there), *(("NaT", values.dtype) if has_missing else (None, object)))
+    filled[is_there] = values
+    return filled
 
 
 def _labelled(options: Options, sources: list[Source], rows: list[NDArray[Any]]) -> list[tuple[str, NDArray[Any]]]:
@@ -814,6 +826,19 @@ def _id_from_disk(options: Options) -> Any:
         raise FileError("--memory-limit takes one column of ids: pass one by --id")
     names = [of_side[0] if of_side else None for of_side in sides]
     return names[0] if len(names) == 1 else tuple(names)
+
+
+def _refuse_options_of_disk(options: Options) -> None:
+    """Raises an error for options that have no meaning in memory."""
+    if options.memory_limit is None:
+        given = {
+            "workers": options.workers is not None,
+            "spill": options.spill is not None,
+            "overwrite": options.overwrite,
+        }
+        for name, is_given in given.items():
+            if is_given:
+                raise FileError(f"--{name} is for --memory-limit: pass both, or leave it out")
 
 
 @contextmanager

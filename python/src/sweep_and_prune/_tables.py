@@ -33,7 +33,7 @@ from ._text import (
     read_table,
     table_parts,
 )
-from ._writers import ARROW_ENDINGS, pyarrow_for
+from ._writers import ARROW_ENDINGS, pyarrow_for, texts_of_times
 
 _KINDS = {
     **{".csv": "csv", ".txt": "csv", ".tsv": "tsv", ".npy": "npy", ".npz": "npy"},
@@ -180,20 +180,19 @@ class Source:
         return read_column(self._column(name), f"column {name}")
 
     def label(self, name: str) -> Any:
-        """A column of any type as it is written: an array, or something that has an array of some rows at `[rows]`."""
+        """A column as it is written in text: an array, or something that has an array of some rows at `[rows]`."""
         if isinstance(self.values, Text):
             return self.values.label(name)
         values = self._labels(name)
-        if getattr(values, "null_count", 0):  # as an array of NumPy, integers would become floating point
-            values = values.to_pylist()
-        return np.asarray(values, object if isinstance(values, list) else None)
+        return _objects([_written(one) for one in values.to_pylist()]) if _is_nested(values) else _label_of(values)
 
     def typed_label(self, name: str) -> Any:
         """A column as it is written where columns have types: one of text that has plain numbers becomes numbers."""
         text = self.text
-        if text is not None and name not in self.by and text.are_plain_numbers(name):
-            return text.plain_numbers(name)
-        return self.label(name)
+        if text is None:
+            return _label_of(self._labels(name))
+        is_number = name not in self.by and text.are_plain_numbers(name)
+        return text.plain_numbers(name) if is_number else text.label(name)
 
     def _labels(self, name: str) -> Any:
         if name not in self.labels:
@@ -219,6 +218,59 @@ class Source:
         if isinstance(self.values, Text):
             return f"{self.name}, line {self.values.line(index)}"
         return f"{self.name}, {self.row} {index} (the first is 0)"
+
+
+class Zoned:
+    """Times with a time zone, which arrays of NumPy do not have; in text they are those of UTC."""
+
+    dtype = np.dtype(object)
+
+    def __init__(self, times: Any) -> None:
+        """`times` are of Arrow."""
+        self._times = times
+
+    def __len__(self) -> int:
+        return len(self._times)
+
+    def __getitem__(self, rows: NDArray[Any]) -> Zoned:
+        """The times of some rows; a row of -1 has none."""
+        import pyarrow
+
+        return Zoned(self._times.take(pyarrow.array(rows, mask=rows < 0)))
+
+    def __arrow_array__(self, type: Any = None) -> Any:
+        times = self._times if type is None else self._times.cast(type)
+        return times.combine_chunks() if hasattr(times, "combine_chunks") else times
+
+    def tolist(self) -> list[str | None]:
+        """The times as text."""
+        texts = texts_of_times(np.asarray(self._times))
+        return [None if text is None else f"{text}Z" for text in texts]
+
+
+def _label_of(values: Any) -> Any:
+    """A column of Arrow or NumPy as it is written."""
+    kind = getattr(values, "type", None)
+    if kind is None:
+        return np.asarray(values)
+    import pyarrow
+
+    types = pyarrow.types
+    if types.is_timestamp(kind) and kind.tz is not None:
+        return Zoned(values)
+    has_missing = types.is_timestamp(kind) or types.is_date(kind) or types.is_duration(kind)
+    if values.null_count and not has_missing:  # as an array of NumPy, integers would become floating point
+        return _objects(values.to_pylist())
+    return np.asarray(values)
+
+
+def _is_nested(values: Any) -> bool:
+    kind = getattr(values, "type", None)
+    if kind is None:
+        return False
+    import pyarrow
+
+    return bool(pyarrow.types.is_nested(kind))
 
 
 class _Watched(io.RawIOBase):
@@ -490,7 +542,7 @@ def _objects(values: list[Any]) -> NDArray[Any]:
 
 def _written(value: Any) -> Any:
     """A value of JSON in a cell."""
-    return json.dumps(value) if isinstance(value, (list, dict)) else value
+    return json.dumps(value, default=str) if isinstance(value, (list, dict)) else value
 
 
 def _is_detection(item: Any) -> bool:

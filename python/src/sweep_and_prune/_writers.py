@@ -37,7 +37,7 @@ class _TextWriter:
 
     def write(self, columns: Sequence[NDArray[Any]]) -> None:
         delimiter, cell = self._delimiter, self._cell
-        lists = [column.tolist() for column in columns]
+        lists = [texts_of_times(column) if column.dtype.kind in "mM" else column.tolist() for column in columns]
         if len(lists) == 2 and all(column.dtype.kind in "iu" for column in columns):
             lines = [f"{i}{delimiter}{j}\n" for i, j in zip(*lists)]
         else:
@@ -46,6 +46,22 @@ class _TextWriter:
 
     def close(self) -> None:
         self._file.flush()
+
+
+def texts_of_times(times: NDArray[Any]) -> list[str | None]:
+    """Times as text, as Python writes them; it has no nanoseconds of its own, and no year above 9999."""
+    unit = np.datetime_data(times.dtype)[0]
+    if unit == "ns":
+        micro, nano = np.divmod(times.astype(np.int64), 1000)
+        whole = micro.astype(f"{times.dtype.kind}8[us]").tolist()
+        texts = [
+            f"{value}{'' if '.' in str(value) else '.000000'}{rest:03}" if rest else str(value)
+            for value, rest in zip(whole, nano.tolist())
+        ]
+    else:
+        counts = zip(times, times.tolist())
+        texts = [(str(time) if isinstance(value, int) else str(value)).replace("T", " ") for time, value in counts]
+    return [None if is_missing else text for text, is_missing in zip(texts, np.isnat(times).tolist())]
 
 
 def _cell_of_csv(value: object) -> str:

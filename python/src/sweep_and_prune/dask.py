@@ -33,6 +33,7 @@ from ._inputs import checked_format
 from ._partitioned.boxes import InvalidRowError, list_files
 from ._partitioned.dataset import DatasetError, Manifest, read_manifest
 from ._partitioned.files import checked_path
+from ._partitioned.folder import boxes_of
 from ._partitioned.plain import Options, Wanted, is_plain, plain_boxes
 from ._partitioned.plan import ARGUMENTS
 from ._partitioned.run import Job, Source, refuse_own_files, run, source_of_files
@@ -390,7 +391,7 @@ def _folder_for_plain(out: Path | None, spill: Path | None) -> Iterator[Path]:
         with tempfile.TemporaryDirectory(prefix="sweep-and-prune-", dir=spill) as folder:
             yield Path(folder)
     elif spill is None:
-        yield out.with_name(out.name + ".boxes")
+        yield boxes_of(out)
     else:
         yield spill / f"sweep-and-prune-{sha256(os.path.abspath(out).encode()).hexdigest()[:32]}"
 

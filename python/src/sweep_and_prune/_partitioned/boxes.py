@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from .. import _crs
 from .._arrays import read_boxes
-from .._columns import is_rounded, read_column, side_by_side
+from .._columns import is_missing_value, is_rounded, read_column, side_by_side
 from .._errors import InvalidBoxError
 from .._inputs import Raw, box_columns, listed, unknown_columns
 from .._prepare import prepare, refuse_inverted
@@ -151,13 +151,7 @@ class Form(NamedTuple):
         """The ids of the rows of a table."""
         column = table[self.ids]
         ids = np.asarray(column)
-        missing = (
-            ids != ids
-            if ids.dtype.kind == "f"
-            else np.array([value is None for value in ids.tolist()])
-            if (ids.dtype.kind == "O")
-            else np.zeros(0, bool)
-        )
+        missing = np.array([*map(is_missing_value, ids.tolist())], bool) if ids.dtype.kind == "O" else ids != ids
         if missing.any():
             row = first_row + int(np.argmax(missing))
             raise DatasetError(f"{place}, row {row} (the first is 0): column {self.ids} has no id; give each box one")

@@ -71,6 +71,11 @@ def work_of(out: Path) -> Path:
     return out.with_name(out.name + ".unfinished")
 
 
+def boxes_of(out: Path) -> Path:
+    """The folder of the boxes of files that a run cannot read as they are."""
+    return out.with_name(out.name + ".boxes")
+
+
 @contextmanager
 def claimed(work: Path) -> Iterator[Plan | None]:
     """Makes the folder of a run, or takes that of an interrupted run, for this process alone.
@@ -83,7 +88,7 @@ def claimed(work: Path) -> Iterator[Plan | None]:
     """
     _check(work)
     work.mkdir(parents=True, exist_ok=True)
-    with _locked(work / _LOCK):
+    with locked(work / _LOCK):
         plan = _check(work)
         _remove(work, lambda name: re.fullmatch(re.escape(PLAN) + PART, name) or _is_part(plan, name))
         try:
@@ -126,10 +131,16 @@ def _check(work: Path) -> Plan | None:
 
 
 @contextmanager
-def _locked(path: Path) -> Iterator[None]:
+def locked(path: Path) -> Iterator[None]:
+    """Makes a file, if need be, and keeps it for this process alone.
+
+    Raises:
+        DatasetError: if another process has it.
+    """
     try:
         import fcntl
     except ImportError:  # there are no such locks on Windows
+        path.touch()
         yield
         return
     with open(path, "a") as file:

@@ -10,8 +10,9 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -30,7 +31,8 @@ from .._tables import columns_of_groups, is_text, kind_of_file, read_parts
 from .._text import GENOMIC, Text
 from .boxes import File, Form, InvalidRowError, form_of_files, opened
 from .dataset import DatasetError
-from .files import part_of, read_sealed, write_sealed
+from .files import PART, part_of, read_sealed, write_sealed
+from .folder import locked
 from .run import Source
 
 _ROWS = 2**17
@@ -38,6 +40,8 @@ _ROWS = 2**17
 _BYTES_OF_GROUP = 400
 """The memory that a group takes while its number is looked up."""
 _NOTE = "_boxes.json"
+_LOCK = "lock"
+_BOXES = re.compile(rf"([01]\.parquet|{re.escape(_NOTE)})({PART})?")
 _AXES = "xyzw"
 _EPOCH = 10**18
 
@@ -234,9 +238,7 @@ class _Groups:
             column = table.group(name)
             if column.codes is not None:
                 return column.values.tolist(), column.codes.astype(np.int64)
-            known: dict[Any, int] = {}
-            codes = [known.setdefault(value, len(known)) for value in column.values.tolist()]
-            return list(known), np.array(codes, np.int64)
+            return _numbered(column.values.tolist())
         import pyarrow
         import pyarrow.compute
 
@@ -246,8 +248,11 @@ class _Groups:
             wide = pyarrow.int32() if array.type.bit_width == 32 else pyarrow.int64()
             array = array.view(wide)
         found = array.dictionary_encode(null_encoding="encode")
-        values = [None if value != value else (str(kind), value) for value in found.dictionary.to_pylist()]
-        return values, found.indices.to_numpy(zero_copy_only=False).astype(np.int64)
+        # Arrow tells zeros of both signs apart, and a missing value from a NaN.
+        values, codes = _numbered(
+            [None if value != value else (str(kind), value) for value in found.dictionary.to_pylist()]
+        )
+        return values, codes[found.indices.to_numpy(zero_copy_only=False)]
 
     def _keep(self, table: Table, rows: NDArray[np.int64]) -> None:
         """Keeps these rows, each the first of its group."""
@@ -269,6 +274,13 @@ class _Groups:
         text = Text(self._name, self._by, self._cells, self._lines)
         text.format = self._format._replace(attributes="") if self._format is not None else None
         return Table(self._name, text)
+
+
+def _numbered(values: list[Any]) -> tuple[list[Any], NDArray[np.int64]]:
+    """The different values of a list, in the order in which they come, and which of them is at each place."""
+    known: dict[Any, int] = {}
+    codes = [known.setdefault(value, len(known)) for value in values]
+    return list(known), np.array(codes, np.int64)
 
 
 class _Types:
@@ -333,36 +345,53 @@ def plain_boxes(
 
     Files that are there from a run that was interrupted are used again, if they are of the same boxes.
     """
-    try:
-        sets = [_Set(one, options) for one in wanted]
-        _check(sets)
-        key = _key(wanted, options)
-        noted = _noted(folder, key)
-        if noted is None:
+    with ExitStack() as stack:
+        try:
+            sets = [_Set(one, options) for one in wanted]
+            _check(sets)
+            key = _key(wanted, options)
+            _refuse_others(folder)
             folder.mkdir(parents=True, exist_ok=True)
-            try:
-                noted = _written(sets, options, folder, memory, progress)
-            except Exception:
-                _remove(folder)
+            stack.enter_context(locked(folder / _LOCK))
+            noted = _noted(folder, key)
+            if noted is None:
+                _remove_boxes(folder)
+                try:
+                    noted = _written(sets, options, folder, memory, progress)
+                except Exception:
+                    _remove(folder)
+                    raise
+                for argument in range(len(sets)):
+                    _stamp(folder / f"{argument}.parquet", key)
+                write_sealed(folder / _NOTE, {"key": key, **noted})
+        except FileError as error:
+            raise DatasetError(error.message) from None
+        except OSError as error:
+            if isinstance(error, DatasetError):
                 raise
-            for argument in range(len(sets)):
-                _stamp(folder / f"{argument}.parquet", key)
-            write_sealed(folder / _NOTE, {"key": key, **noted})
-    except FileError as error:
-        raise DatasetError(error.message) from None
-    except OSError as error:
-        if isinstance(error, DatasetError):
-            raise
-        raise DatasetError(f"{folder}: {error.strerror or error}; the same call begins again") from None
-    yield [_source(folder / f"{argument}.parquet", one, noted) for argument, one in enumerate(sets)]
-    _remove(folder)
+            raise DatasetError(f"{folder}: {error.strerror or error}; the same call begins again") from None
+        yield [_source(folder / f"{argument}.parquet", one, noted) for argument, one in enumerate(sets)]
+        _remove(folder)
+
+
+def _refuse_others(folder: Path) -> None:
+    """Raises an error if a folder has other files than those of a run, which has a lock."""
+    names = os.listdir(folder) if os.path.lexists(folder) else []
+    if names and not (_LOCK in names and all(name == _LOCK or _BOXES.fullmatch(name) for name in names)):
+        raise DatasetError(f"{folder} exists and has other files: rename it, or choose another out")
 
 
 def _remove(folder: Path) -> None:
-    for name in ("0.parquet", "1.parquet", _NOTE):
-        (folder / name).unlink(missing_ok=True)
+    _remove_boxes(folder)
+    (folder / _LOCK).unlink(missing_ok=True)
     with suppress(OSError):  # it has something else
         folder.rmdir()
+
+
+def _remove_boxes(folder: Path) -> None:
+    """Removes the files of a run, and those that it was writing when it was killed."""
+    for name in filter(_BOXES.fullmatch, os.listdir(folder)):
+        (folder / name).unlink(missing_ok=True)
 
 
 def _check(sets: list[_Set]) -> None:
@@ -392,17 +421,9 @@ def _noted(folder: Path, key: str) -> dict[str, Any] | None:
     """What is known of the files of an interrupted run of the same boxes."""
     try:
         noted = read_sealed(folder / _NOTE)
-    except FileNotFoundError:
-        if os.path.lexists(folder) and os.listdir(folder) and not _are_of_run(folder):
-            raise DatasetError(f"{folder} exists and has other files: rename it, or choose another out") from None
-        return None
-    except ValueError:
+    except (FileNotFoundError, ValueError):
         return None
     return noted if noted.pop("key", None) == key else None
-
-
-def _are_of_run(folder: Path) -> bool:
-    return all(name.split(".")[0] in ("0", "1", "_boxes") for name in os.listdir(folder))
 
 
 def _stamp(path: Path, key: str) -> None:

@@ -29,6 +29,7 @@ from .dataset import (
 from .files import read_sealed, sync
 from .folder import (
     Folders,
+    boxes_of,
     claimed,
     finish,
     has_results,
@@ -126,7 +127,7 @@ def _place(out: Path) -> Path:
 def refuse_own_files(paths: Any, files: list[File], out: Path) -> None:
     """Raises an error if the files of boxes are files of pairs of this call, now or when it is repeated."""
     place = _place(out)
-    own = {Path(os.path.realpath(folder)) for folder in (place, work_of(place))}
+    own = {Path(os.path.realpath(folder)) for folder in (place, work_of(place), boxes_of(place))}
     for folder in folders_of(paths):
         if is_data(os.path.realpath(place / "x.parquet"), os.path.realpath(folder)):
             raise ValueError(
