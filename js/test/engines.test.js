@@ -91,6 +91,31 @@ for (const views of [false, true]) {
   });
 }
 
+test("objects without a box: bodies that are gone, those that the user disabled, and what is in something invisible", () => {
+  /** @type {BroadPhase<2, unknown>} */
+  const world = new BroadPhase({ dimensions: 2 });
+  pixi.insertObjects(world, [sprite()]);
+  world.clear();
+  assert.equal(world.isEnabled(Number(pixi.insertObjects(world, [sprite()])[0])), false, "the one before is gone");
+
+  const corpse = sprite(1);
+  const id = Number(pixi.insertObjects(world, [corpse])[0]);
+  world.setEnabled(id, false);
+  for (const x of [undefined, 1]) {
+    corpse.x = x;
+    pixi.moveObjects(world);
+    assert.equal(world.isEnabled(id), false);
+  }
+
+  const level = { visible: true, parent: { visible: true, parent: null } };
+  const coin = Number(pixi.insertObjects(world, [{ ...sprite(1), parent: level }])[0]);
+  for (const visible of [true, false, true]) {
+    level.parent.visible = visible;
+    pixi.moveObjects(world);
+    assert.equal(world.isEnabled(coin), visible);
+  }
+});
+
 test("a box with a NaN is refused, and then nothing has changed", () => {
   const world = new BroadPhase({ dimensions: 2 });
   const [a, b] = [sprite(0), sprite(1)];

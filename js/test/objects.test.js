@@ -106,6 +106,16 @@ test("typed arrays of whole numbers are taken, each number as it is", () => {
   assert.throws(() => findPairs(/** @type {any} */ (new BigInt64Array(2)), { dimensions: 1 }), /^TypeError: `boxes` must be a typed array of numbers/);
 });
 
+test("sides that also have a size, as bounds of engines do", () => {
+  class Bounds {
+    left = 1; top = 2; right = 4; bottom = 6;
+    get width() { return this.right - this.left; }
+    get height() { return this.bottom - this.top; }
+  }
+  const boxes = [new Bounds(), { x: 4, y: 6, width: 1, height: 1, left: 9 }];
+  assert.deepEqual(findPairs(boxes), [boxes]);
+});
+
 test("no boxes need no options", () => {
   assert.deepEqual(findPairs([]), []);
   assert.deepEqual(findPairsBetween([], [{ minX: 0, maxX: 1 }]), []);

@@ -158,7 +158,7 @@ export function isNamed(value: unknown): value is object {
  */
 export function readBox(box: object, dimensions: Dimensions, name: string, into: Float64Array, at: number, index: number): Form {
   const form = formOf(box, name, index);
-  if (form === rectangle && index <= 0) refuseOrigin(box, name, index);
+  if (form === rectangle) refuseOrigin(box, name, index);
   for (const corner of [0, 1] as const) {
     for (let axis = 0; axis < dimensions; axis++, at++) {
       const value = form.read(box, corner, axis);
@@ -171,7 +171,7 @@ export function readBox(box: object, dimensions: Dimensions, name: string, into:
   return form;
 }
 
-/** Throws for a sprite that has its origin (Phaser) or anchor (Pixi) at its `x` and `y`. Of many, which are alike, the first is looked at. */
+/** Throws for a sprite that has its origin (Phaser) or anchor (Pixi) at its `x` and `y`. */
 function refuseOrigin(box: object, name: string, index: number): void {
   const { originX, originY, anchor } = box as { originX?: unknown; originY?: unknown; anchor?: Corner | null };
   if (originX || originY || anchor?.x || anchor?.y) throw new TypeError(`${labelOf(name, index)} does not begin at its position: pass its \`getBounds()\``);
@@ -359,7 +359,7 @@ function formOf(box: object, name: string, index: number): Form {
   if ("min" in box) return minMax;
   if ("lowerBound" in box) return bounds;
   if ("minX" in box) return edges;
-  if ("width" in box) return rectangle;
+  if ("width" in box && ("x" in box || !("left" in box))) return rectangle;
   if ("left" in box) return sides;
   if ("w" in box) return shortRectangle;
   return refuseObject(box, labelOf(name, index));

@@ -78,7 +78,7 @@ interface RayCastOptions {
 interface CollisionProcessor {
   getColliders(): readonly Collider[];
   track(target: Collider): void;
-  untrack(target: Collider): void;
+  untrack(target: Collider | undefined): void;
   update(colliders: readonly Collider[], elapsed: number): number;
   broadphase(colliders: readonly Collider[], elapsed: number): object[];
   narrowphase(pairs: object[], stats?: object): object[];
@@ -90,7 +90,8 @@ interface CollisionProcessor {
 /**
  * Gives a scene of Excalibur another broad phase: a `BroadPhase` whose bodies are the scene's colliders. It finds the pairs, and
  * answers `scene.physics.query` and `scene.physics.rayCast`. The narrow phase and the solver stay Excalibur's. The contacts are
- * the same; their order is not.
+ * the same; their order is not. Excalibur's dynamic tree also stops fast bodies at what is in their way
+ * (`continuous.checkForFastBodies`); this one does not.
  *
  * A step takes the time of {@link BroadPhase.update}, and O(1) for each collider that is passed to it.
  *
@@ -143,16 +144,16 @@ class Processor implements CollisionProcessor {
     return [...this.#tracked.keys()];
   }
 
-  track(target: Collider): void {
+  track(target: Collider | undefined): void {
     for (const collider of partsOf(target)) {
-      collider.owner = target.owner;
+      collider.owner = target!.owner;
       if (this.#tracked.has(collider)) continue;
       const { left, top, right, bottom } = collider.bounds;
       this.#tracked.set(collider, { id: this.#world.insert([left, top, right, bottom], { data: collider }) });
     }
   }
 
-  untrack(target: Collider): void {
+  untrack(target: Collider | undefined): void {
     for (const collider of partsOf(target)) {
       const tracked = this.#tracked.get(collider);
       if (tracked) this.#world.remove(tracked.id);
@@ -227,7 +228,7 @@ class Processor implements CollisionProcessor {
   }
 }
 
-/** The colliders of a composite one, or the collider. */
-function partsOf(collider: Collider): readonly Collider[] {
-  return collider.getColliders?.() ?? [collider];
+/** The colliders of a composite one, or the collider. An actor without a shape has none. */
+function partsOf(collider: Collider | undefined): readonly Collider[] {
+  return collider ? (collider.getColliders?.() ?? [collider]) : [];
 }

@@ -15,7 +15,7 @@ export interface Kind<D extends 2 | 3, T> {
   writeBox(object: T, boxes: Float64Array, at: number): boolean;
 }
 
-/** The bodies of each broad phase that are disabled because their objects have no box. */
+/** The bodies of each broad phase that were enabled until their objects had no box. */
 const withoutBox = new WeakMap<object, Set<ProxyId>>();
 
 /** For the boxes of all objects that move in a frame. */
@@ -34,9 +34,7 @@ export function insert<D extends 2 | 3, T, Data>(kind: Kind<D, T>, world: BroadP
   const ids = world.insertMany(boxes as Boxes<D>, filter, objects);
   if (!hasBox.includes(false)) return ids;
   const kept = ids.slice(); // with the option `views`, the next call may overwrite them
-  const hidden = new Set(withoutBox.get(world));
-  for (const [at, id] of kept.entries()) if (!hasBox[at]) hidden.add(id);
-  hide(world, hidden);
+  hide(world, kept.filter((_, at) => !hasBox[at]), withoutBox.get(world));
   return kept;
 }
 
@@ -45,24 +43,24 @@ export function move<D extends 2 | 3, T>(kind: Kind<D, T>, world: BroadPhase<D>)
   checkWorld(kind, world);
   const width = 2 * kind.dimensions;
   const boxes = rows[kind.dimensions].for(world.size);
+  const before = withoutBox.get(world);
   const ids: ProxyId[] = [];
-  const hidden = new Set<ProxyId>();
+  const hidden: ProxyId[] = [];
   for (const id of Array.from(world.ids())) {
     const object = world.data(id);
     if (!hasMethods(object, kind.method)) continue;
     if (kind.writeBox(object as T, boxes, width * ids.length)) ids.push(id);
-    else hidden.add(id);
+    else if (before?.has(id) || world.isEnabled(id)) hidden.push(id);
   }
   world.setMany(ids, boxes.subarray(0, width * ids.length) as Boxes<D>);
-  const before = withoutBox.get(world);
   if (before) for (const id of ids) if (before.has(id)) world.setEnabled(id, true);
   hide(world, hidden);
 }
 
-/** Disables bodies, and notes which: no others are enabled when their objects have boxes again. */
-function hide(world: BroadPhase, hidden: Set<ProxyId>): void {
+/** Disables bodies, and notes them beside others: when their objects have boxes again, these are enabled, and none that the user disabled. */
+function hide(world: BroadPhase, hidden: Iterable<ProxyId>, others: Iterable<ProxyId> = []): void {
   for (const id of hidden) world.setEnabled(id, false);
-  withoutBox.set(world, hidden);
+  withoutBox.set(world, new Set([...others, ...hidden]));
 }
 
 /** Refuses what is not a broad phase of such objects. */

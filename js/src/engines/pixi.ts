@@ -7,6 +7,15 @@ import { insert, type Kind, move } from "./objects.js";
 export interface PixiObject {
   /** Its bounds in the coordinates of the stage. */
   getBounds(skipUpdate?: boolean, bounds?: any): EdgesBox<2>;
+
+  /** What it is in. */
+  readonly parent?: PixiParent | null;
+}
+
+/** A `Container` that holds others. */
+export interface PixiParent {
+  readonly visible: boolean;
+  readonly parent?: PixiParent | null;
 }
 
 /** One object for the bounds of all calls, which the first call makes. */
@@ -17,6 +26,8 @@ const kind: Kind<2, PixiObject> = {
   name: "a `Container` of Pixi",
   method: "getBounds",
   writeBox(object, boxes, at) {
+    // Its bounds are the same if something that it is in is invisible.
+    for (let { parent } = object; parent; { parent } = parent) if (!parent.visible) return false;
     bounds = object.getBounds(false, bounds);
     const { minX, minY, maxX, maxY } = bounds;
     // What is empty or invisible has these bounds in Pixi, wherever it is.
@@ -31,7 +42,8 @@ const kind: Kind<2, PixiObject> = {
 
 /**
  * Inserts a body for each sprite or container, whose box is that of `getBounds()`, in the coordinates of the stage, and whose data is the
- * object. Returns their ids, in the order of the objects. What is empty or invisible pairs with nothing until it has bounds.
+ * object. Returns their ids, in the order of the objects. What is empty or invisible, by itself or by what it is in, pairs with
+ * nothing until it has bounds. What leaves the stage still has bounds: remove its body.
  *
  * @param filter One filter for all bodies, or an array with one for each.
  *
@@ -51,6 +63,9 @@ export function insertObjects<Data>(world: BroadPhase<2, Data>, objects: readonl
 /**
  * Gives each body whose data is a sprite or a container the bounds that the object has now: call it once in each frame, before
  * `world.update()` and before queries. Other bodies stay where they are.
+ *
+ * A body is disabled while its object has no box, and in snapshots and clones of that time, too: after `restore` and in a clone,
+ * enable it yourself.
  *
  * It takes the time of `getBounds()` for each object.
  *

@@ -97,6 +97,9 @@ export function insertObjects<Data>(world: BroadPhase<3, Data>, objects: readonl
  * `world.update()` and before queries. Other bodies stay where they are. It does not update the matrices of parents, which
  * rendering does, or `scene.updateMatrixWorld()`.
  *
+ * A body is disabled while its object has no box, and in snapshots and clones of that time, too: after `restore` and in a clone,
+ * enable it yourself.
+ *
  * It takes O(1) time for each object and what is in it: for the 8 corners of each geometry's box. Vertices are read once for
  * each geometry, by three.js.
  *
@@ -115,6 +118,7 @@ export function moveObjects(world: BroadPhase<3>): void {
 /**
  * The first hit of a `Raycaster` among the bodies whose data are meshes or groups: what
  * `raycaster.intersectObjects(objects)[0]` gives. Boxes come nearest first, and three.js tests what is in them until no nearer hit is left.
+ * Lines, points and sprites, which a ray may hit beside their boxes, are not always found.
  *
  * It takes the time of {@link BroadPhase.rayCastAll} and of `intersectObject` for some of the boxes that the ray hits. Boxes in
  * single precision are rounded: use a world with `precision: "double"` if a ray that only touches a mesh has to hit it.

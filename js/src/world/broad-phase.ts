@@ -243,9 +243,10 @@ export class BroadPhase<D extends Dimensions = Dimensions, Data = unknown> exten
    * {@link BroadPhase.pairsOf} for each body takes much more.
    */
   pairsByBody(): PairsByBody {
-    const pairs = this.pairs();
     const countIn = (ids: Float64Array): number => ids.reduce((most, id) => Math.max(most, slotOf(id) + 1), 0);
-    const count = Math.max(countIn(this.ids()), countIn(pairs));
+    const ids = countIn(this.ids()); // before the pairs, which may be a view that another call overwrites
+    const pairs = this.pairs();
+    const count = Math.max(ids, countIn(pairs));
     const starts = allocate(() => new Uint32Array(count + 1));
     const others = allocate(() => new Float64Array(pairs.length));
     // First how many there are, then where each ends; filled from the end, what is left is where each starts.

@@ -91,6 +91,9 @@ const actions = {
 };
 const calm = ["add", "add", "add", "remove", "jump", "shape"];
 const names = ["add", "add", "add", "remove", "jump", "type", "group", "shape"];
+const label = new ex.Actor({ x: 1, y: 1 });
+scene.add(label);
+label.removeComponent(ex.ColliderComponent); // which has no shape
 for (let step = 0; step < 400; step++) {
   hasChanged = step >= 200;
   if (step === 100) scene.physics.config = { ...scene.physics.config }; // after which Excalibur makes another processor of its own
