@@ -11,3 +11,11 @@ export function showLoadFailure(place: HTMLElement, error: unknown): void {
   place.replaceChildren(says, retry);
   place.classList.add("load-failure");
 }
+
+/** The same after something that stays, once. */
+export function showLoadFailureAfter(element: Element, error: unknown): void {
+  const known = element.nextElementSibling;
+  const place = known instanceof HTMLElement && known.matches(".load-failure") ? known : document.createElement("p");
+  showLoadFailure(place, error);
+  element.after(place);
+}

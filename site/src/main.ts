@@ -3,7 +3,7 @@
 import "sweep-and-prune-classroom/demo.css";
 import { startArticle } from "./article/article.ts";
 import { HeroBoxes } from "./hero/hero-boxes.ts";
-import { showLoadFailure } from "./load-failed.ts";
+import { showLoadFailureAfter } from "./load-failed.ts";
 import { whenNear } from "./panel/awake.ts";
 
 customElements.define("hero-boxes", HeroBoxes);
@@ -16,11 +16,7 @@ function loadDemos(): void {
   if (isLoading) return;
   isLoading = true;
   import("./article/demos.ts").catch((error: unknown) => {
-    for (const demo of document.querySelectorAll("sap-demo")) {
-      const says = document.createElement("p");
-      showLoadFailure(says, error);
-      demo.after(says);
-    }
+    for (const demo of document.querySelectorAll(DEMOS)) showLoadFailureAfter(demo, error);
   });
 }
 

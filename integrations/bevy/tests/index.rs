@@ -180,6 +180,57 @@ fn an_invalid_box_is_named_and_stays_out_until_it_is_valid() {
     assert!(index.rejected().is_empty() && index.contains(entity));
 }
 
+/// An app's own component that disables entities.
+#[derive(Component)]
+struct Asleep;
+
+#[test]
+fn an_entity_that_a_component_of_the_app_disables_leaves_the_index_until_it_is_enabled() {
+    let mut app = App::new();
+    app.add_plugins(SpatialIndexPlugin::<1>::default());
+    app.world_mut().register_disabling_component::<Asleep>();
+    let aabb = BoundingBox(Aabb::new([0.0], [1.0]));
+    let [entity, asleep] =
+        [app.world_mut().spawn(aabb).id(), app.world_mut().spawn((aabb, Asleep)).id()];
+    app.update();
+    assert_eq!(app.world().resource::<SpatialIndex<1>>().pairs().count(), 0);
+    app.world_mut().entity_mut(asleep).remove::<Asleep>();
+    app.update();
+    assert!(app.world().resource::<SpatialIndex<1>>().pairs().eq([[entity, asleep]]));
+    app.world_mut().entity_mut(entity).insert(Asleep);
+    app.update();
+    let index = app.world().resource::<SpatialIndex<1>>();
+    assert!(!index.contains(entity) && index.contains(asleep));
+    assert_eq!(drain::<OverlapEnded<1>>(app.world_mut()).len(), 1);
+}
+
+#[test]
+fn entities_can_be_despawned_while_a_user_has_the_index() {
+    let mut app = App::new();
+    app.add_plugins(SpatialIndexPlugin::<1>::default());
+    let entity = app.world_mut().spawn(BoundingBox(Aabb::new([0.0], [1.0]))).id();
+    app.update();
+    app.world_mut().resource_scope(|world, index: Mut<SpatialIndex<1>>| {
+        for found in index.containing([0.5]).expect("a valid point") {
+            world.despawn(found);
+        }
+    });
+    app.update();
+    assert!(!app.world().resource::<SpatialIndex<1>>().contains(entity));
+}
+
+#[test]
+fn an_entity_is_rejected_once_however_much_of_it_has_changed() {
+    let mut app = App::new();
+    app.add_plugins(SpatialIndexPlugin::<1>::default());
+    let entity = app.world_mut().spawn(BoundingBox(Aabb::new([0.0], [1.0]))).id();
+    app.update();
+    let mut changed = app.world_mut().entity_mut(entity);
+    changed.insert(Disabled).remove::<Disabled>().insert(BoundingBox(Aabb::new([1.0], [0.0])));
+    app.update();
+    assert_eq!(app.world().resource::<SpatialIndex<1>>().rejected().len(), 1);
+}
+
 #[test]
 fn rays_hit_entities_and_points_have_nearest_ones() {
     let mut app = App::new();

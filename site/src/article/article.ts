@@ -3,6 +3,7 @@
 
 import type { SapDemo } from "sweep-and-prune-classroom/demo";
 import { copyable } from "../code/copy.ts";
+import { showLoadFailureAfter } from "../load-failed.ts";
 import { followDemos } from "./follow.ts";
 import { markTogether } from "./marks.ts";
 import { startSpaceTime } from "./space-time.ts";
@@ -53,10 +54,15 @@ function editable(listing: HTMLElement): void {
       end = undefined;
     } else {
       button.disabled = true;
-      const [{ edit }] = await Promise.all([import("./editing.ts"), import("./demos.ts")]);
-      await demo.ready;
-      button.disabled = false;
-      end = edit(listing, demo);
+      try {
+        const [{ edit }] = await Promise.all([import("./editing.ts"), import("./demos.ts")]);
+        await demo.ready;
+        end = edit(listing, demo);
+      } catch (error) {
+        return showLoadFailureAfter(listing, error);
+      } finally {
+        button.disabled = false;
+      }
     }
     button.setAttribute("aria-pressed", String(end !== undefined));
     button.textContent = end ? "Done" : "Edit";

@@ -1,12 +1,13 @@
 // The demos that the address names after its `#`: what `share()` and `embedCode()` lead to. Several stand side by side.
 
 import "../classroom/start.ts";
+import { showLoadFailure } from "../load-failed.ts";
 import { readShared } from "sweep-and-prune-classroom/demo";
 
-const place = document.querySelector("#demos")!;
+const place = document.querySelector<HTMLElement>("#demos")!;
 
 function show(): void {
-  if (location.hash === "#three-structures") return void import("../structures/alone.ts").then(({ ThreeStructures }) => place.replaceChildren(new ThreeStructures()));
+  if (location.hash === "#three-structures") return void import("../structures/alone.ts").then(({ ThreeStructures }) => place.replaceChildren(new ThreeStructures()), (error: unknown) => showLoadFailure(place, error));
   const demos = location.hash.slice(1).split("|").map(demoOf);
   const [first] = demos;
   if (demos.length === 1) return place.replaceChildren(first!);

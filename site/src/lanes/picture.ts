@@ -29,6 +29,7 @@ export function sweepOf(record: string, width: number): Shown {
   const y = (at: number): number => ((at - top) * height) / (bottom - top);
   const shape = (box: Box, kind: string): string => rect({ left: x(box.left), top: y(box.top), right: x(box.right), bottom: y(box.bottom) }, kind);
   const tests = stepsOf(column, 1).length;
+  const lineCount = Math.ceil(column.length / LINE);
 
   const scene = ({ probe, from, lanes, hits }: Step): string => {
     const others = all.filter((box) => !column.some(({ id }) => id === box.id)).map((box) => shape(box, "other"));
@@ -40,16 +41,16 @@ export function sweepOf(record: string, width: number): Shown {
   };
 
   const pitch = WIDE / (Math.ceil((column.length + 16) / LINE) * LINE + 4);
-  const memory = ({ probe, from, lanes }: Step): string => {
+  /** How many cache lines of each array are loaded after a step: a later probe begins further left. */
+  const linesAt = (at: number): number => Math.max(...steps.slice(0, at + 1).map(({ from }) => Math.min(Math.floor((from + width - 1) / LINE) + 1, lineCount)));
+  const memory = ({ probe, from, lanes }: Step, lines: number): string => {
     const rows = ["left", "top", "bottom"].map((name, row) => {
       const begin = 78;
       const place = (at: number): number => begin + (at * (WIDE - begin)) / (WIDE / pitch) + (Math.floor(at / LINE) * (WIDE - begin)) / WIDE * 3;
       const size = ((WIDE - begin) * pitch) / WIDE;
-      const loaded = Math.floor((from + lanes.length - 1) / LINE);
       const cells = Array.from({ length: column.length }, (_, at) => {
         const inVector = at >= from && at < from + lanes.length;
-        const line = Math.floor(at / LINE);
-        const kind = at === probe ? "probe" : inVector ? "lane" : line <= loaded ? "loaded" : "cell";
+        const kind = at === probe ? "probe" : inVector ? "lane" : Math.floor(at / LINE) < lines ? "loaded" : "cell";
         return cell(place(at), 6 + 26 * row, size * 0.86, 18, kind);
       });
       return `<text x="0" y="${20 + 26 * row}">${name}</text>${cells.join("")}`;
@@ -77,9 +78,9 @@ export function sweepOf(record: string, width: number): Shown {
     steps,
     html: (at) => {
       const step = steps[at]!;
-      const linesSoFar = Math.floor((step.from + width - 1) / LINE) + 1;
-      return `${scene(step)}${memory(step)}${vector(step)}
-        <p class="fast-count"><strong>${at + 1}</strong> of ${steps.length} steps (one lane: ${tests.toLocaleString("en")}); <strong>${Math.min(linesSoFar, Math.ceil(column.length / LINE))}</strong> of ${Math.ceil(column.length / LINE)} cache lines of each array loaded</p>`;
+      const lines = linesAt(at);
+      return `${scene(step)}${memory(step, lines)}${vector(step)}
+        <p class="fast-count"><strong>${at + 1}</strong> of ${steps.length} steps (one lane: ${tests.toLocaleString("en")}); <strong>${lines}</strong> of ${lineCount} cache lines of each array loaded</p>`;
     },
   };
 }

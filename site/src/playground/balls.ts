@@ -9,14 +9,17 @@ export class BallsPicture {
   #view: View | undefined;
   #dimensions = 0;
   #last: Balls | undefined;
+  #end = new AbortController();
 
   /** `place` holds the canvas: it turns the view of spheres. */
   constructor(
     private readonly place: HTMLElement,
-    private readonly signal: AbortSignal,
+    signal: AbortSignal,
     private readonly changed: () => void,
     private readonly failed: (error: unknown) => void,
-  ) {}
+  ) {
+    signal.addEventListener("abort", () => this.#end.abort());
+  }
 
   /** Shows balls and, of discs, lines for pairs; without balls, hides the picture. */
   show(balls: Balls | undefined, dimensions: 2 | 3, pairs?: Uint32Array): void {
@@ -48,6 +51,8 @@ export class BallsPicture {
   #open(dimensions: 2 | 3): void {
     this.#dimensions = dimensions;
     this.#view = undefined;
+    this.#end.abort();
+    const { signal } = (this.#end = new AbortController());
     const canvas = document.createElement("canvas");
     const isTurned = dimensions === 3;
     this.place.replaceChildren(canvas);
@@ -55,20 +60,20 @@ export class BallsPicture {
     this.place.setAttribute("role", isTurned ? "application" : "img");
     this.place.setAttribute("aria-label", isTurned ? "Spheres falling into a box. Arrow keys turn the view, plus and minus zoom." : "Discs falling into a box");
     const opened = isTurned
-      ? import("../view/sphere-view.ts").then(({ SphereView }): View => new SphereView(canvas, this.place, readTheme(), this.changed))
+      ? import("../view/sphere-view.ts").then(({ SphereView }): View | undefined => (signal.aborted ? undefined : new SphereView(canvas, this.place, readTheme(), this.changed, signal)))
       : import("../view/disc-view.ts").then(({ DiscView }): View => new DiscView(canvas, readTheme()));
     opened.then(
       (view) => {
-        if (dimensions !== this.#dimensions) return;
+        if (!view || signal.aborted) return;
         this.#view = view;
         onThemeChange(() => {
           view.setTheme(readTheme());
           this.changed();
-        }, this.signal);
+        }, signal);
         this.#begin();
         this.changed();
       },
-      (error: unknown) => this.failed(isTurned ? new Error("drawing the spheres needs WebGL, which this browser does not offer. The boxes are searched anyway, and the numbers are correct", { cause: error }) : error),
+      (error: unknown) => signal.aborted || this.failed(error),
     );
   }
 }

@@ -322,7 +322,7 @@ export class BoxPlayground extends PanelElement {
       await new Promise<void>((resolve) => (this.#whenPaced = resolve));
       this.#showNow();
       const taken = this.#snapshot();
-      if (!taken) throw new Error("there are no boxes yet");
+      if (!taken) throw new Error("no algorithm is done with these boxes");
       return taken;
     };
     const onExport = (part: string, says: (step: string) => string, work: (taken: Snapshot) => Promise<void>): void =>
@@ -357,14 +357,14 @@ export class BoxPlayground extends PanelElement {
     const take = (text: string): void => {
       try {
         const imported = readBoxes(text);
-        this.#hands.replace(() => imported);
+        this.#hands.replaceAll(imported);
         this.#view = undefined;
         this.write("imported", `${formatCount(imported.boxes.length / (2 * imported.dimensions))} boxes imported.`);
       } catch (error) {
         this.write("imported", messageOf(error));
       }
     };
-    const takeFile = (given: File | undefined): void => void given?.text().then(take);
+    const takeFile = (given: File | undefined): void => void given?.text().then(take, (error: unknown) => this.write("imported", messageOf(error)));
     this.onClick("import", () => file.click());
     file.addEventListener("change", () => {
       takeFile(file.files?.[0]);
@@ -434,6 +434,8 @@ export class BoxPlayground extends PanelElement {
     const runners = this.#lanes.all;
     this.#record = new ExperimentRecord(runners.length);
     this.#frame = undefined;
+    this.#noPicture = "";
+    for (const part of ["boxes", "size", "spread"]) this.named<HTMLInputElement>(part).disabled = this.#own !== undefined;
     this.#send({ type: "begin", run: ++this.#run, world: this.#world(), runners, ...how });
     this.#describe();
   }
@@ -471,10 +473,13 @@ export class BoxPlayground extends PanelElement {
   }
 
   #snapshot(): Snapshot | undefined {
-    const [lane] = this.#frame?.lanes ?? [];
+    const lanes = this.#frame?.lanes ?? [];
+    // One that was stopped has no pairs.
+    const at = lanes.findIndex((lane) => "report" in lane);
+    const lane = lanes[at];
     if (!this.#frame || !lane || !("report" in lane)) return undefined;
     const { step, boxes } = this.#frame;
-    return { world: this.#world(), method: this.#lanes.all[0]!, step, boxes, pairs: lane.report.pairs, address: this.#addressOf(step) };
+    return { world: this.#world(), method: this.#lanes.all[at]!, step, boxes, pairs: lane.report.pairs, address: this.#addressOf(step) };
   }
 
   /** The address that leads back to a step; none if the boxes do not fit into it. */
@@ -624,7 +629,6 @@ export class BoxPlayground extends PanelElement {
     this.write("message", frame.balls ? this.#noPicture : "");
     this.#lanes.show(lanes, names.map((_, at) => this.#record.level(at, MEASURES[0])));
     this.write("verdict", names.length > 1 ? verdict(frame, this.#record, names) : "");
-    for (const part of ["boxes", "size", "spread"]) this.named<HTMLInputElement>(part).disabled = this.#own !== undefined;
   }
 
   #showPreview(): void {

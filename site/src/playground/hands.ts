@@ -67,9 +67,14 @@ export class Hands {
   /** Changes the boxes in a way that can be undone. */
   replace(change: (shown: Shown) => Shown, selected?: number): void {
     const shown = this.playground.shown();
-    if (!shown) return;
-    this.#keep(shown);
-    this.playground.setBoxes(change(shown));
+    if (shown) this.replaceAll(change(shown), selected);
+  }
+
+  /** Puts other boxes in the place of those that are shown, if there are any, in a way that can be undone. */
+  replaceAll(boxes: Shown, selected?: number): void {
+    const shown = this.playground.shown();
+    if (shown) this.#keep(shown);
+    this.playground.setBoxes(boxes);
     this.#select(selected);
   }
 

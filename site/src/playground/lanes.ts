@@ -48,6 +48,7 @@ export class Lanes {
       remove?.addEventListener("click", () => {
         this.set(this.#lanes.filter((_, place) => place !== at), dimensions);
         this.changed(this.#lanes);
+        this.#select(at - 1, "algorithm").focus();
       });
     });
   }

@@ -1,6 +1,6 @@
 // Light or dark: what the visitor chose, or else what the system says.
 
-import { store } from "./stored.ts";
+import { store, stored } from "./stored.ts";
 
 export type Choice = "auto" | "light" | "dark";
 
@@ -29,7 +29,8 @@ function apply(chosen: Choice): void {
   window.dispatchEvent(new Event("themechange"));
 }
 
-// Another tab of the site chose.
-window.addEventListener("storage", ({ key, newValue }) => {
-  if (key === "theme") apply(newValue === "light" || newValue === "dark" ? newValue : "auto");
-});
+const applyStored = (value: string | null): void => apply(value === "light" || value === "dark" ? value : "auto");
+
+// Another tab of the site chose, or another page from which the visitor came back.
+window.addEventListener("storage", ({ key, newValue }) => key === "theme" && applyStored(newValue));
+window.addEventListener("pageshow", ({ persisted }) => persisted && applyStored(stored("theme")));

@@ -17,7 +17,7 @@ export class ThreeStructures extends HTMLElement {
   #chosen = 0;
 
   connectedCallback(): void {
-    startAlgorithms().then(() => this.#start(), (error: unknown) => showLoadFailure(this.querySelector(".caption")!, error));
+    startAlgorithms().then(() => this.#start(), (error: unknown) => showLoadFailure(this.querySelector<HTMLElement>(".caption") ?? this, error));
   }
 
   #start(): void {

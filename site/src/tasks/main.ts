@@ -3,6 +3,7 @@
 import type { Verdict } from "../edit/checks.ts";
 import type { Editor } from "../edit/editor.ts";
 import type { Sandbox } from "../edit/sandbox.ts";
+import { showLoadFailureAfter } from "../load-failed.ts";
 import { letter, line, rect, text } from "../svg.ts";
 
 let sandbox: Sandbox | undefined;
@@ -11,10 +12,16 @@ for (const task of document.querySelectorAll<HTMLElement>(".task")) {
   const button = task.querySelector<HTMLButtonElement>("[data-part=try]")!;
   button.addEventListener("click", async () => {
     button.disabled = true;
-    const [{ openEditor }, { Sandbox }] = await Promise.all([import("../edit/editor.ts"), import("../edit/sandbox.ts")]);
-    sandbox ??= new Sandbox();
-    button.remove();
-    start(task, openEditor, sandbox);
+    try {
+      const [{ openEditor }, { Sandbox }] = await Promise.all([import("../edit/editor.ts"), import("../edit/sandbox.ts")]);
+      sandbox ??= new Sandbox();
+      start(task, openEditor, sandbox);
+      button.remove();
+      task.querySelector<HTMLElement>(".cm-content")?.focus();
+    } catch (error) {
+      button.disabled = false;
+      showLoadFailureAfter(button, error);
+    }
   });
 }
 

@@ -48,10 +48,14 @@ export class SphereView implements View {
 
   /**
    * `surface` takes the pointer and the keys that turn the view; `changed` is called when it has
-   * turned and must be drawn again.
+   * turned and must be drawn again. `signal` ends it.
    */
-  constructor(canvas: HTMLCanvasElement, surface: HTMLElement, theme: Theme, private readonly changed: () => void) {
-    this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+  constructor(canvas: HTMLCanvasElement, surface: HTMLElement, theme: Theme, private readonly changed: () => void, signal: AbortSignal) {
+    try {
+      this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+    } catch (error) {
+      throw new Error("drawing the spheres needs WebGL, which this browser does not offer. The boxes are searched anyway, and the numbers are correct", { cause: error });
+    }
     this.#spheres = new Mesh(squares(0), sphereMaterial());
     this.#spheres.frustumCulled = false;
     this.#scene.add(this.#floor, this.#edges, this.#spheres);
@@ -63,10 +67,16 @@ export class SphereView implements View {
     surface.style.touchAction = "pan-y";
     // The wheel scrolls the page until the stage has been chosen by a click or by the keyboard.
     this.#controls.enableZoom = false;
-    surface.addEventListener("focus", () => (this.#controls.enableZoom = true));
-    surface.addEventListener("blur", () => (this.#controls.enableZoom = false));
-    surface.addEventListener("keydown", (event) => this.#turnByKey(event));
+    surface.addEventListener("focus", () => (this.#controls.enableZoom = true), { signal });
+    surface.addEventListener("blur", () => (this.#controls.enableZoom = false), { signal });
+    surface.addEventListener("keydown", (event) => this.#turnByKey(event), { signal });
     this.#controls.addEventListener("change", changed);
+    signal.addEventListener("abort", () => {
+      this.#controls.dispose();
+      this.#renderer.dispose();
+      this.#renderer.forceContextLoss(); // a browser has few contexts, and frees one late
+      surface.style.touchAction = "";
+    });
   }
 
   begin(world: World, radii: Float32Array, tints: Float32Array): void {

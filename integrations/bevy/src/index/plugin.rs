@@ -1,26 +1,36 @@
 //! The plugin that keeps the index up to date.
 
 use bevy::app::{App, Plugin, PostUpdate};
-use bevy::ecs::entity::Entity;
-use bevy::ecs::entity_disabling::Disabled;
+use bevy::ecs::component::ComponentId;
+use bevy::ecs::entity::{Entity, EntityHashSet};
+use bevy::ecs::entity_disabling::DefaultQueryFilters;
 use bevy::ecs::event::EntityEvent;
 use bevy::ecs::intern::Interned;
 use bevy::ecs::lifecycle::{Add, Remove};
 use bevy::ecs::message::MessageWriter;
+use bevy::ecs::observer::Observer;
 use bevy::ecs::query::{Changed, Or};
+use bevy::ecs::resource::Resource;
+use bevy::ecs::schedule::common_conditions::run_once;
 use bevy::ecs::schedule::{IntoScheduleConfigs, ScheduleLabel, SystemSet};
 use bevy::ecs::system::{Query, ResMut};
+use bevy::ecs::world::World;
 
 use super::components::{BoundingBox, IndexFilter};
 use super::messages::{OverlapBegan, OverlapEnded};
 use super::resource::SpatialIndex;
 use crate::versions::on;
 
+/// Entities that may have left the index, or come back, without a change of a component. Not in the index itself, which
+/// a user may have taken out of the world while entities are despawned.
+#[derive(Resource, Default)]
+struct Touched<const D: usize>(Vec<Entity>);
+
 /// An observer that has the entity of an event read again.
 macro_rules! touch_on {
     ($event:ident, $components:ty) => {
-        |trigger: on!($event, $components), mut index: ResMut<SpatialIndex<D>>| {
-            index.touch(trigger.event_target());
+        |trigger: on!($event, $components), mut touched: ResMut<Touched<D>>| {
+            touched.0.push(trigger.event_target());
         }
     };
 }
@@ -71,14 +81,25 @@ impl<const D: usize> Default for SpatialIndexPlugin<D> {
 
 impl<const D: usize> Plugin for SpatialIndexPlugin<D> {
     fn build(&self, app: &mut App) {
+        let systems = (observe_disabling::<D>.run_if(run_once), update_index::<D>).chain();
         app.init_resource::<SpatialIndex<D>>()
+            .init_resource::<Touched<D>>()
             .add_message::<OverlapBegan<D>>()
             .add_message::<OverlapEnded<D>>()
-            .add_systems(self.schedule, update_index::<D>.in_set(SpatialIndexSystems))
+            .add_systems(self.schedule, systems.in_set(SpatialIndexSystems))
             .add_observer(touch_on!(Remove, BoundingBox<D>))
-            .add_observer(touch_on!(Remove, IndexFilter))
-            .add_observer(touch_on!(Add, Disabled))
-            .add_observer(touch_on!(Remove, Disabled));
+            .add_observer(touch_on!(Remove, IndexFilter));
+    }
+}
+
+/// Observes the components that take an entity out of queries: [`Disabled`](bevy::ecs::entity_disabling::Disabled) and
+/// those that an app has registered, which has to be done before it starts.
+fn observe_disabling<const D: usize>(world: &mut World) {
+    let filters = world.get_resource::<DefaultQueryFilters>();
+    let disabling: Vec<ComponentId> = filters.into_iter().flat_map(|all| all.disabling_ids()).collect();
+    for component in disabling {
+        world.spawn(Observer::new(touch_on!(Add, ())).with_component(component));
+        world.spawn(Observer::new(touch_on!(Remove, ())).with_component(component));
     }
 }
 
@@ -90,17 +111,24 @@ type IsChanged<const D: usize> = Or<(Changed<BoundingBox<D>>, Changed<IndexFilte
 
 fn update_index<const D: usize>(
     mut index: ResMut<SpatialIndex<D>>,
+    mut touched: ResMut<Touched<D>>,
     rows: Query<Row<'static, D>>,
     changed: Query<Entity, IsChanged<D>>,
     mut began: MessageWriter<OverlapBegan<D>>,
     mut ended: MessageWriter<OverlapEnded<D>>,
 ) {
-    let touched = index.begin();
-    for entity in touched.into_iter().chain(&changed) {
-        match rows.get(entity) {
-            Ok((aabb, filter)) => index.put(entity, aabb.0, filter.copied().unwrap_or_default().0),
-            Err(_) => index.remove(entity),
-        }
+    index.forget_rejected();
+    let mut read = |entity| match rows.get(entity) {
+        Ok((aabb, filter)) => index.put(entity, aabb.0, filter.copied().unwrap_or_default().0),
+        Err(_) => index.remove(entity),
+    };
+    // Each once: an entity may be touched several times, and changed too.
+    let mut seen = EntityHashSet::default();
+    for entity in touched.0.drain(..).filter(|&entity| seen.insert(entity)) {
+        read(entity);
+    }
+    for entity in changed.iter().filter(|entity| !seen.contains(entity)) {
+        read(entity);
     }
     index.update(
         |pair| {

@@ -19,8 +19,6 @@ pub struct SpatialIndex<const D: usize> {
     entities: Vec<Entity>,
     ids: EntityHashMap<ProxyId>,
     rejected: Vec<(Entity, Error)>,
-    /// Entities that may have left the index, or come back, without a change of a component.
-    touched: Vec<Entity>,
     /// Buffers: bodies that move, and their boxes.
     moving: Vec<ProxyId>,
     boxes: Vec<Aabb<D>>,
@@ -54,8 +52,8 @@ impl<const D: usize> Default for SpatialIndex<D> {
     fn default() -> Self {
         let mut world = BroadPhase::new();
         world.prepare_queries();
-        let (entities, ids, rejected, touched) = Default::default();
-        Self { world, entities, ids, rejected, touched, moving: Vec::new(), boxes: Vec::new() }
+        let (entities, ids, rejected) = Default::default();
+        Self { world, entities, ids, rejected, moving: Vec::new(), boxes: Vec::new() }
     }
 }
 
@@ -216,15 +214,9 @@ impl<const D: usize> SpatialIndex<D> {
         }
     }
 
-    /// Notes that an entity may have left the index, or come back.
-    pub(super) fn touch(&mut self, entity: Entity) {
-        self.touched.push(entity);
-    }
-
-    /// Forgets which boxes were rejected, and returns the entities that were touched.
-    pub(super) fn begin(&mut self) -> Vec<Entity> {
+    /// Forgets which boxes were rejected.
+    pub(super) fn forget_rejected(&mut self) {
         self.rejected.clear();
-        std::mem::take(&mut self.touched)
     }
 
     /// Finds the overlaps that began and ended since the last update, and prepares for queries.
@@ -234,11 +226,6 @@ impl<const D: usize> SpatialIndex<D> {
         mut end: impl FnMut([Entity; 2]),
     ) {
         let Self { world, entities, moving, boxes, .. } = self;
-        if moving.iter().any(|&id| !world.contains(id)) {
-            // One that was both touched and changed.
-            let both = moving.iter().zip(boxes.iter()).filter(|(id, _)| world.contains(**id));
-            (*moving, *boxes) = both.map(|(&id, &aabb)| (id, aabb)).unzip();
-        }
         let set = world.set_many(moving, boxes);
         debug_assert!(set.is_ok(), "valid boxes of bodies that are here");
         moving.clear();
