@@ -39,6 +39,18 @@ test("where the script of the demos does not load, each demo says so", async ({ 
   await expect(page.locator("#d2").getByRole("button", { name: "Try again" })).toBeVisible();
 });
 
+test("where the editor does not load, the button says so and can be pressed again", async ({ page }) => {
+  for (const [path, name] of [["/#d14", "Edit"], ["/tasks.html", "Try it"]] as const) {
+    await page.route(/\/(editing|editor)-[^/]*\.js/, (route) => route.abort());
+    await page.goto(path);
+    const button = page.getByRole("button", { name, exact: true }).first();
+    await button.scrollIntoViewIfNeeded();
+    await button.click();
+    await expect(page.locator(".load-failure").first()).toContainText("A file of this page did not load");
+    await expect(button).toBeEnabled();
+  }
+});
+
 test("where the library does not load, the trial says so", async ({ page }) => {
   await page.route(/sweep-and-prune[^/]*\.wasm/, (route) => route.abort());
   await page.goto("/");

@@ -311,6 +311,14 @@ test.describe("paused", () => {
     await expect(playground.root.getByLabel("Dimensions")).toHaveValue("3");
   });
 
+  test("where the first algorithm was stopped, the pairs of another one are exported", async ({ page }) => {
+    const playground = await new Playground(page).open("?boxes=20000&scene=tower&algorithm=swap-driven+sweep&axis=x&2=find+pairs");
+    await expect(playground.root.locator(".lane-out").first()).toContainText("would have to keep");
+    const { algorithm, count, pairs } = JSON.parse(await playground.download("json"));
+    expect([algorithm, count]).toEqual(["find pairs", 20_000]);
+    expect(pairs).toBeGreaterThan(0);
+  });
+
   test("JSON says everything", async ({ page }) => {
     const playground = await new Playground(page).open("?boxes=200&scene=tiny&seed=9");
     const json = JSON.parse(await playground.download("json"));

@@ -175,6 +175,7 @@ test.describe("paused", () => {
     }
     await expect(race.root.getByRole("button", { name: "Add an algorithm" })).toBeHidden();
     await race.root.getByRole("button", { name: "Remove algorithm 2" }).click();
+    await expect(race.lane(1).getByLabel("Algorithm", { exact: true })).toBeFocused();
     await race.lane(2).getByLabel("Sort").selectOption("Timsort");
     await race.lane(2).getByLabel("Sweep axis").selectOption("y");
     const kept = { "2": "swap-driven sweep", "2.sort": "Timsort", "2.axis": "y", "3": "global pairwise" };
@@ -196,6 +197,12 @@ test.describe("paused", () => {
   test("too many pairs, or too much to keep, is refused in words", async ({ page }) => {
     const race = await new Race(page).open("?scene=coincident&boxes=20000");
     await expect(race.root.locator('[data-part="message"]')).toContainText("199,990,000 pairs; the limit is 2,000,000");
+    // Boxes of one's own can take their place.
+    await race.root.getByText("Paste boxes as text").click();
+    await race.root.locator('[data-part="pasted"]').fill("0,0,2,2\n1,1,3,3");
+    await race.root.getByRole("button", { name: "Use these boxes" }).click();
+    await expect(race.root.locator('[data-part="imported"]')).toHaveText("2 boxes imported.");
+    await expect.poll(() => race.value(1, "pairs")).toBe(1);
     await race.open("?scene=tower&boxes=20000&2.axis=y&3.axis=x&1=find+pairs");
     await expect(race.lane(3).locator('.lane-out')).toContainText("would have to keep 199,");
     await expect(race.root.locator('[data-part="verdict"]')).toContainText("found the same");

@@ -131,7 +131,7 @@ impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
         Ok(buffers.store.pairs())
     }
 
-    /// Finds the pairs as [`pairs`](Self::pairs) does, unless there are more than so many: then it gives up when it has found
+    /// Finds the pairs as [`pairs`](Self::pairs) does, unless there are more than `most`: then it gives up when it has found
     /// these and a buffer more on each thread, and there are none.
     pub(crate) fn pairs_up_to(self, most: usize) -> Result<Option<&'f mut [[u32; 2]]>, Error> {
         let Self { buffers, sets, .. } = self;
@@ -141,7 +141,9 @@ impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
         match result {
             Err(Error::Cancelled) => Ok(None),
             // A buffer of an earlier search may have had space for more, on which the result must not depend.
-            result => result.map(|()| (buffers.store.len <= most).then(|| buffers.store.pairs_mut())),
+            result => {
+                result.map(|()| (buffers.store.len <= most).then(|| buffers.store.pairs_mut()))
+            }
         }
     }
 
@@ -426,7 +428,9 @@ mod tests {
         let mut used = PairFinder::new();
         used.find(&many).unwrap();
         for finder in [&mut PairFinder::new(), &mut used] {
-            for (most, expected) in [(0, None), (189, None), (190, Some(190)), (usize::MAX, Some(190))] {
+            for (most, expected) in
+                [(0, None), (189, None), (190, Some(190)), (usize::MAX, Some(190))]
+            {
                 let found = finder.search(&few).pairs_up_to(most).unwrap();
                 assert_eq!(found.map(|pairs| pairs.len()), expected, "at most {most}");
             }

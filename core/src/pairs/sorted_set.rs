@@ -153,7 +153,10 @@ mod tests {
         let long = |y: u16| Aabb::new([0.0, f32::from(y)], [4000.0, f32::from(y) + 0.5]);
         let with: Vec<_> = (1..1000).map(long).collect();
         assert!(matches!(sorted.pairs_with(&with, usize::MAX, finder), Ok(None)));
-        let few = sorted.pairs_with(&with[..5], usize::MAX, finder).unwrap().expect("they are not crowded");
+        let few = sorted
+            .pairs_with(&with[..5], usize::MAX, finder)
+            .unwrap()
+            .expect("they are not crowded");
         assert_eq!(few.len(), 4000);
 
         let crowd = [Aabb::new([0.0; 2], [1.0; 2]); 20_000];

@@ -193,7 +193,9 @@ mod tests {
     fn ask(sorted: &mut SortedBodies<2, f32>, bodies: &[Aabb<2>]) -> bool {
         sorted.prepare(bodies);
         let (areas, mut finder) = (boxes(4096, 0.5), PairFinder::new());
-        let Some(mut pairs) = sorted.pairs_with(&areas, bodies, usize::MAX, &mut finder) else { return false };
+        let Some(mut pairs) = sorted.pairs_with(&areas, bodies, usize::MAX, &mut finder) else {
+            return false;
+        };
         let mut expected = finder.find_between(&areas, bodies).unwrap().to_vec();
         pairs.sort_unstable();
         expected.sort_unstable();
@@ -266,7 +268,9 @@ mod tests {
         let areas = [Aabb::new([5.0; 3], [6.0; 3])];
         let mut tries = 0;
         for _ in 0..100 {
-            assert!(sorted.pairs_with(&areas, &bodies, usize::MAX, &mut PairFinder::new()).is_none());
+            assert!(
+                sorted.pairs_with(&areas, &bodies, usize::MAX, &mut PairFinder::new()).is_none()
+            );
             let misses = *sorted.misses.get_mut();
             sorted.prepare(&bodies);
             tries += usize::from(*sorted.misses.get_mut() < misses);

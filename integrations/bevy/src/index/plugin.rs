@@ -96,7 +96,8 @@ impl<const D: usize> Plugin for SpatialIndexPlugin<D> {
 /// those that an app has registered, which has to be done before it starts.
 fn observe_disabling<const D: usize>(world: &mut World) {
     let filters = world.get_resource::<DefaultQueryFilters>();
-    let disabling: Vec<ComponentId> = filters.into_iter().flat_map(|all| all.disabling_ids()).collect();
+    let disabling: Vec<ComponentId> =
+        filters.into_iter().flat_map(|all| all.disabling_ids()).collect();
     for component in disabling {
         world.spawn(Observer::new(touch_on!(Add, ())).with_component(component));
         world.spawn(Observer::new(touch_on!(Remove, ())).with_component(component));
