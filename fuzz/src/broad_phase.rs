@@ -155,7 +155,7 @@ impl<const D: usize, T: Scalar> Sequence<D, T> {
 
     fn update(&mut self) {
         // It has none of the buffers of earlier updates, on which no order may depend.
-        let clone = (self.calls % 8 == 0).then(|| self.world.clone());
+        let clone = self.calls.is_multiple_of(8).then(|| self.world.clone());
         let changes = self.world.update();
         self.changes = (changes.begun().collect(), changes.ended().collect());
         let expected = self.model.update();
