@@ -15,6 +15,27 @@ const reading = (/** @type {object} */ value, /** @type {() => void} */ run) => 
 
 const unit = [0, 0, 1, 1];
 
+test("an update without stack changes nothing: the next one reports what is new, and nothing twice", () => {
+  const world = new BroadPhase({ dimensions: 2 });
+  const [a = 0, b = 0] = world.insertMany([...unit, ...unit]);
+  assert.deepEqual([...world.update().begun], [a, b]);
+  world.set(b, 5, 5, 6, 6);
+  let isTried = false;
+  const deep = () => {
+    try {
+      deep();
+    } catch (error) {
+      if (isTried) throw error;
+      isTried = true;
+      world.update();
+    }
+  };
+  assert.throws(deep, isOverflow);
+  const { begun, ended } = world.update();
+  assert.deepEqual([[...begun], [...ended]], [[], [a, b]]);
+  world.free();
+});
+
 test("an argument that frees the world while it is read", () => {
   /** @type {Record<string, (world: any, id: number, evil: (value: object) => any) => unknown>} */
   const calls = {

@@ -97,7 +97,13 @@ impl World {
             let count = space.copy(&boxes)?;
             let done = space.run(py, count, |world| world.insert_many(count, filter_of(filter)))?;
             let ids = done.map_err(|error| raise(py, error, argument, &[]))?;
-            numbers(py, ids.into_iter().map(|id| PythonId::from_proxy(id).0))
+            let numbers = numbers(py, ids.iter().map(|&id| PythonId::from_proxy(id).0))?;
+            // A signal that came meanwhile would leave bodies whose ids nobody knows.
+            if let Err(interrupt) = py.check_signals() {
+                space.run(py, count, |world| world.remove_many(&ids))?.ok();
+                return Err(interrupt);
+            }
+            Ok(numbers)
         })
     }
 
@@ -266,6 +272,8 @@ impl World {
             let begun = found.map_err(|error| raise(py, error, "", &[]))?;
             let (begun, ended) = ids.split_at(begun);
             let changes = (id_pairs(py, begun)?, id_pairs(py, ended)?);
+            // A signal that came meanwhile is raised here, where the changes are not lost.
+            py.check_signals()?;
             space.is_due = false;
             Ok(changes)
         })

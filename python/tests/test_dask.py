@@ -339,6 +339,23 @@ def test_missing_and_damaged_files_and_wrong_columns_are_named() -> None:
         sap.find_pairs_between("d.parquet", "g.parquet", cells=2)
 
 
+def test_a_collection_of_other_boxes_is_not_taken_for_the_same() -> None:
+    def collection(x: float, name: str = "a") -> Any:
+        boxes = {"minx": [0, x], "miny": [0, 0], "maxx": [1, x + 1], "maxy": [1, 1]}
+        frame = pandas.DataFrame({**boxes, "name": ["b", name]})
+        return dask.dataframe.from_pandas(frame, npartitions=1)
+
+    rows = [dask.array.from_array(np.array([[0, 0, 1, 1], [x, 0, x + 1, 1]]), chunks=(1, 4)) for x in (0.5, 50)]
+    for number, (same, other, options) in enumerate(
+        [(*rows, {}), (collection(0.5), collection(50.0), {}), (collection(0.5), collection(0.5, "c"), {"ids": "name"})]
+    ):
+        given: dict[str, Any] = {"out": f"out-{number}", "workers": 0, **options}
+        found = sap.find_pairs(same, **given).compute()
+        assert len(found) == 1 and sap.find_pairs(same, **given).compute().equals(found)
+        with pytest.raises(sap.DatasetError, match="other boxes or other options"):
+            sap.find_pairs(other, **given)
+
+
 @pytest.mark.parametrize("dtype", ["Int64", "string", "object"])
 def test_a_missing_id_of_a_collection_is_named(dtype: str) -> None:
     ids = pandas.array([3, None] if dtype == "Int64" else ["a", float("nan") if dtype == "object" else None], dtype)

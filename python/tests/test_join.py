@@ -341,6 +341,31 @@ def test_prepared_geometries_are_left_as_they_were() -> None:
     assert [shapely.is_prepared(np.asarray(frame.geometry.array)).tolist() for frame in (left, right)] == before
 
 
+def test_the_geometries_that_are_prepared_are_nobody_elses(monkeypatch: pytest.MonkeyPatch) -> None:
+    shapely = pytest.importorskip("shapely")
+    frame = shapes(80, 1)
+    users = set(map(id, frame.geometry.array))
+    shapely.prepare(frame.geometry.array[50:55])
+    prepared: list[Any] = []
+    tested: list[Any] = []
+    prepare, within = shapely.prepare, shapely.within
+
+    def noted_prepare(given: Any) -> None:
+        prepared.extend(given)
+        prepare(given)
+
+    def noted_within(a: Any, b: Any) -> Any:
+        tested.extend(a[shapely.is_prepared(a)])
+        return within(a, b)
+
+    monkeypatch.setattr(shapely, "prepare", noted_prepare)
+    monkeypatch.setattr(shapely, "within", noted_within)
+    sap.join(frame, shapes(60, 2), predicate="contains")
+    sap.join(frame, frame, predicate="within")
+    assert prepared and tested, "some are"
+    assert users.isdisjoint(map(id, [*prepared, *tested])), "other threads may test the user's own"
+
+
 def test_geometries_are_checked() -> None:
     left, right = shapes(10, 1), shapes(10, 2)
     with pytest.raises(ValueError, match=r"EPSG:3857 and EPSG:4326: pass right\.to_crs"):

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Iterator
+from decimal import Decimal
 from fractions import Fraction
 from random import Random
 from typing import Any
@@ -462,6 +463,21 @@ def test_small_and_unsigned_types_do_not_overflow(dtype: str) -> None:
     assert sap.nearest(a[1:], b[1:]).distances.tolist() == [high - low]
     assert sap.measure_overlaps(a, b, [[0, 0], [1, 1]]).size.tolist() == [high - low, 0]
     assert sap.find_pairs(b, margin=b.dtype.type(1)).tolist() == [[0, 1]]
+
+
+def test_decimals_have_distances_and_sizes_beside_floating_point() -> None:
+    decimal: Any = Decimal
+    names = ("minx", "miny", "maxx", "maxy")
+    a, b = (dict(zip(names, ([decimal(x)], [decimal(0)]) * 2)) for x in ("0.1", "0.4"))
+    for limit, count in ((0.5, 1), (0.3, 1), (decimal("0.3"), 1), (decimal("0.29"), 0), (0.25, 0)):
+        assert len(sap.nearest(a, b, max_distance=limit).pairs) == count, limit
+    one: Any = {"start": [decimal("0.1")], "end": [decimal("0.9")]}
+    others = np.array([[0.5, 2], [-math.inf, 0.0625], [1, math.inf]])
+    found = sap.measure_overlaps(one, others, sap.find_pairs_between(one, others))
+    assert (found.size.tolist(), found.fraction_a.tolist()) == ([0.4], [0.5])
+    assert sap.nearest(one, others, k=3).distances.tolist() == [0, 0.0375, 0.1]
+    assert len(sap.nearest(one, others, k=3, max_distance=decimal("0.1")).pairs) == 3
+    assert sap.coverage(one, others).tolist() == [0.4]
 
 
 def test_no_pairs_may_be_an_empty_list() -> None:

@@ -47,6 +47,19 @@ test("attributes change while it runs, and the world goes on where it was", asyn
   await expect.poll(() => demo.evaluate((element: SapDemo) => element.balls.length)).toBe(3);
 });
 
+test("what has run for more than a minute is shared as it is, at an address that can be opened", async ({ page }) => {
+  const demo = await open(page, { strategy: "sweep", paused: "" });
+  await expect.poll(() => demo.evaluate((element: SapDemo) => element.balls.length)).toBeGreaterThan(0);
+  const address = await demo.evaluate((element: SapDemo) => {
+    while (element.state.tick <= 3600) for (let step = 0; step < 500; step++) element.step();
+    return element.share();
+  });
+  expect(new URLSearchParams(new URL(address).hash.slice(1)).get("start")).toBeNull();
+  await page.goto(address);
+  await expect(page.locator("sap-demo").getByRole("button", { name: "Step", exact: true })).toBeEnabled();
+  await expect(page.locator("sap-demo").getByRole("alert")).toHaveCount(0);
+});
+
 test("it can be moved, removed and added; many live on one page", async ({ page }) => {
   const demo = await open(page, { strategy: "sweep" });
   await expect.poll(async () => (await stateOf(demo)).tick).toBeGreaterThan(5);
@@ -56,6 +69,8 @@ test("it can be moved, removed and added; many live on one page", async ({ page 
     document.querySelector("main")!.append(place);
     place.append(element);
     const moved = element.state.tick;
+    // It goes on.
+    while (element.state.tick <= moved) await new Promise(requestAnimationFrame);
     element.remove();
     for (let frame = 0; frame < 5; frame++) await new Promise(requestAnimationFrame);
     place.append(element);

@@ -86,7 +86,7 @@ test("misuse", () => {
     assert.throws(() => new Runner(/** @type {any} */ ({ ...good, ...bad })), RangeError);
   }
   const runner = new Runner(good);
-  assert.throws(() => runner.step([1, 0, 0, 1]), InvalidBoxError);
+  assert.throws(() => runner.step([0, 0, 1, 1, 1, 0, 0, 1]), (error) => error instanceof InvalidBoxError && error.index === 1 && error.min === 1 && error.max === 0);
   assert.throws(() => runner.step([1, 0, 0]), RangeError);
   const player = new Player(runner);
   assert.throws(() => player.seek(-1), RangeError);

@@ -159,7 +159,7 @@ impl<const D: usize, T: Scalar> PairFinder<D, T> {
     }
 
     /// The pairs of the last search, without a copy: the finder gives up their buffer, and the next
-    /// search begins with an empty one.
+    /// search begins with an empty one. After a search that ended with an error there are none.
     ///
     /// ```
     /// use sweep_and_prune::{Aabb, PairFinder};

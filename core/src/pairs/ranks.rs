@@ -269,7 +269,7 @@ impl<const D: usize, T: Scalar> Line<'_, D, T> {
         task: Task<'_>,
         mut take: impl FnMut(&[u32]),
     ) -> Result<(), Stop> {
-        let mut counts = [0; BLOCK];
+        let (mut counts, mut unreported) = ([0; BLOCK], 0);
         let starts = range.clone().step_by(BLOCK);
         for (start, block) in starts.zip(self.boxes[range].chunks(BLOCK)) {
             prefetch_ahead(self.boxes, start..start + block.len());
@@ -292,9 +292,15 @@ impl<const D: usize, T: Scalar> Line<'_, D, T> {
                 }
             }
             take(&counts[..block.len()]);
-            if task.progress.is_some() {
-                task.done(block.len() as f64 / self.boxes.len() as f64)?;
+            // Not for each block: of very many boxes, its share is too small to be added.
+            unreported += block.len();
+            if task.progress.is_some() && unreported >= BOXES_AT_A_TIME {
+                task.done(unreported as f64 / self.boxes.len() as f64)?;
+                unreported = 0;
             }
+        }
+        if task.progress.is_some() {
+            task.done(unreported as f64 / self.boxes.len() as f64)?;
         }
         Ok(())
     }

@@ -299,9 +299,12 @@ pub(super) fn store<const D: usize, T: Scalar>(
     let Buffers { driver, near, store, .. } = buffers;
     store.clear();
     let result = run(driver, leaves_out.then_some(near), sets, progress, store);
-    if result == Err(Error::OutOfMemory) {
+    match result {
         // Others may need what was reserved for pairs.
-        buffers.store = Store::default();
+        Err(Error::OutOfMemory) => buffers.store = Store::default(),
+        // How many were found before depends on the threads.
+        Err(_) => buffers.store.clear(),
+        Ok(()) => {}
     }
     result
 }

@@ -562,6 +562,7 @@ fn a_progress_callback_hears_of_progress_and_cancels_the_search() {
         if *asked.lock().unwrap() == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     assert_eq!(finder.search(&heap).progress(&third).pairs(), Err(Error::Cancelled));
+    assert!(finder.take_pairs().is_empty(), "after an error there are none");
 }
 
 #[test]

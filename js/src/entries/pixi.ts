@@ -14,4 +14,4 @@
  * @module
  */
 export * from "./common.js";
-export { insertObjects, moveObjects, type PixiObject } from "../engines/pixi.js";
+export { insertObjects, moveObjects, type PixiObject, type PixiParent } from "../engines/pixi.js";

@@ -130,7 +130,7 @@ export class BroadPhase<D extends Dimensions = Dimensions, Data = unknown> exten
   }
 
   /**
-   * The data of bodies: of those that a query finds.
+   * The data of bodies: of those that a query finds. A body that was inserted without has none, whatever the type says.
    *
    * @example
    * ```js
@@ -142,7 +142,8 @@ export class BroadPhase<D extends Dimensions = Dimensions, Data = unknown> exten
   }
 
   /**
-   * The data of pairs, two ids each: of those that began or ended, or that overlap.
+   * The data of pairs, two ids each: of those that began or ended, or that overlap. As in {@link BroadPhase.dataOf}, bodies
+   * without data have none.
    *
    * @example
    * ```js
@@ -288,7 +289,8 @@ export class BroadPhase<D extends Dimensions = Dimensions, Data = unknown> exten
 
   /**
    * Becomes what it was at a {@link BroadPhase.snapshot}, with the ids of then. The next update reports what changed since
-   * the last one before the snapshot. The bytes hold no data: bodies have that which they had last.
+   * the last one before the snapshot. The bytes hold no data: bodies have that which they had last. That of a body that was
+   * removed is gone after two updates: give it with {@link BroadPhase.setData}.
    *
    * @throws {@link SnapshotError} if the bytes are not a snapshot of boxes with these dimensions; `RangeError` if they are
    *   of another precision. Then nothing has changed.

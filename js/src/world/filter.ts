@@ -36,9 +36,10 @@ export function filterWords(filter: Partial<Filter>, others: Filter): FilterWord
   for (const key in filter) if (key !== "mask" && key !== "category" && key !== "group" && key !== "isStatic") checkOptionNames(filter, filterNames, "filter");
   const { category = others.category, mask = others.mask, group = others.group, isStatic = others.isStatic } = filter;
   // Bits may be written as signed numbers too: ~2 is all but the second.
-  for (const [name, bits] of [["category", category], ["mask", mask], ["group", group]] as const) {
-    if (!(Number.isInteger(bits) && bits >= -(2 ** 31) && bits < 2 ** 32)) {
-      throw new RangeError(`\`${name}\` of the filter is ${describe(bits)}; it must be a whole number of 32 bits`);
+  for (const [name, bits] of Object.entries({ category, mask, group })) {
+    const limit = name === "group" ? 2 ** 31 : 2 ** 32; // the sign of a group has a meaning
+    if (!(Number.isInteger(bits) && bits >= -(2 ** 31) && bits < limit)) {
+      throw new RangeError(`\`${name}\` of the filter is ${describe(bits)}; it must be a whole number below ${limit}`);
     }
   }
   if (typeof isStatic !== "boolean") throw new TypeError(`\`isStatic\` of the filter must be true or false, not ${describe(isStatic)}`);

@@ -104,7 +104,7 @@ export class WorldMemory {
   /** The corners of a box that a call passed: in the rows, or among the numbers. */
   #corners(isRow: boolean, set: number, index: number, axis: number): readonly [min: number, max: number] {
     const { stored } = this;
-    const numbers = isRow ? this.#rows! : this.numbers();
+    const numbers = isRow ? this.rowsFor(index + 1) : this.numbers(); // the memory may have grown since they were written
     const at = (isRow ? index : set) * 2 * stored + axis;
     return [numbers[at]!, numbers[at + stored]!];
   }
@@ -124,7 +124,11 @@ export class WorldMemory {
 
   /** Updates, and writes what changed. */
   update(into: Changes): void {
-    this.call((exports, world) => exports.world_update(world, this.#failures++));
+    this.call((exports, world) => {
+      const code = exports.world_update(world, this.#failures);
+      this.#failures++; // until all has arrived; not where the call threw, which then changed nothing
+      return code;
+    });
     const { engine } = this;
     const [at, total, begun] = [engine.detail(0), engine.detail(1), this.numbers()[0]!];
     into.begun = this.give(at, begun);

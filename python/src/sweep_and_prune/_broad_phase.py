@@ -631,6 +631,22 @@ class BroadPhase:
         """
         return Filter(*self._world.filters(one_id(id))[0])
 
+    def filter_many(self, ids: ArrayLike) -> list[Filter]:
+        """Returns the filters of many bodies.
+
+        Args:
+            ids: `(n,)` ids.
+
+        Raises:
+            StaleProxyError: for the first id that is stale.
+
+        >>> import sweep_and_prune as sap
+        >>> world = sap.BroadPhase(dimensions=1)
+        >>> [filter.group for filter in world.filter_many(world.insert_many([[0, 1], [2, 3]]))]
+        [0, 0]
+        """
+        return [Filter(*one) for one in self._world.filters(id_array(ids))]
+
     def set_filter(self, id: SupportsIndex, filter: Filter) -> None:
         """Changes which bodies a body may pair with; the next update reports the pairs that begin or end.
 
@@ -1415,6 +1431,8 @@ class BroadPhase:
         count, far = min(whole(k, "k", 0, 2**63 - 1), len(self)), real(max_distance, "max_distance")
         if not far >= 0:
             raise InvalidQueryError(0, "max_distance", far, "0 or more")
+        with np.errstate(over="ignore"):
+            far = float(self._dtype.type(far))
         part = Part(name, points, "finite")
         ids, squares, _, ends = self._ask("nearest", filter, part, k=count, max_distance=far, exclude=exclude)
         distances = np.sqrt(squares)
@@ -1459,7 +1477,7 @@ class BroadPhase:
         way, kind = Part("directions", ways, "finite"), _cast_kind(False, ignore_touching)
         found = self._ask(kind, filter, starts, way, far, exclude=exclude)
         hits = np.diff(found.ends, prepend=0) > 0
-        ids, t, faces = np.full(count, -1), np.full(count, np.inf), np.zeros(count, np.int64)
+        ids, t, faces = np.full(count, -1, np.int64), np.full(count, np.inf), np.zeros(count, np.int64)
         ids[hits], t[hits], faces[hits] = found.ids, found.values, found.faces
         return Hits(ids, t, _normals(faces, self._dimensions), hits & (faces == 0))
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from decimal import Decimal
+from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,7 +15,7 @@ from ._arrays import Boxes, checked_closed, read_boxes, whole
 from ._broad_phase import BroadPhase
 from ._columns import read_column
 from ._native import nearest_of_rows
-from ._overlaps import Values, check_intervals, line_keys, plain_corners, ranks_of
+from ._overlaps import Values, check_intervals, line_keys, plain_corners, ranks_of, rounded
 from ._pairs import Groups, Margin, find, one_set, stream, two_sets
 from ._prepare import Prepared, is_missing, refuse_inverted
 
@@ -248,7 +250,7 @@ def coverage(
             np.add.at(covered, first, shared)
 
     stream(search, add, _CHUNK, np.int64)
-    return covered
+    return rounded(covered)
 
 
 def nearest(
@@ -319,6 +321,8 @@ def nearest(
         pairs = np.concatenate([pairs, *_beside(prepared, are_short, min(k, max(len(corners[1]), 1)))])
     distances = _distances(corners, pairs)
     if limit is not None:
+        if isinstance(limit, Decimal) and any(type(value) is Fraction for value in distances.tolist()):
+            limit = Fraction(limit)  # Python does not compare these two
         is_near = distances <= limit
         pairs, distances = pairs[is_near], distances[is_near]
     keys = _sort_keys(distances)
@@ -333,7 +337,7 @@ def nearest(
         distances = np.concatenate([distances, np.full(len(alone), nothing, distances.dtype)])
         order = np.argsort(pairs[:, 0], kind="stable")
         pairs, distances = pairs[order], distances[order]
-    return Nearest(pairs, distances)
+    return Nearest(pairs, rounded(distances))
 
 
 def _limit(max_distance: Any, corners: Values) -> Any:
@@ -351,12 +355,20 @@ def _limit(max_distance: Any, corners: Values) -> Any:
 
 def _reach(corners: list[Values], limit: Any) -> Any:
     """The margin that finds all boxes within a distance, however sums are rounded in single precision."""
-    if corners[0].dtype.kind != "f":
+    is_exact = corners[0].dtype.kind == "O"
+    if corners[0].dtype.kind != "f" and not (is_exact and any(map(_has_fractions, corners))):
         return math.floor(limit)
+    if is_exact:  # only distances are rounded
+        return float(limit) * (1 + 2**-50)
     finite = [np.abs(boxes[np.isfinite(boxes)]).max(initial=0) for boxes in corners]
     limit = float(limit)
     reach = limit + 4 * float(np.finfo(np.float32).eps) * (max(map(float, finite)) + limit)
     return min(reach, float(np.finfo(float).max))
+
+
+def _has_fractions(boxes: Values) -> bool:
+    """Whether some of Python's own numbers may be no integers."""
+    return any(not isinstance(value, int) for value in boxes.ravel().tolist())
 
 
 def _nearest_of_boxes(prepared: Prepared, corners: list[Values], k: int) -> NDArray[np.int64]:

@@ -497,8 +497,11 @@ def _tested(
     of_a, of_b = in_order(candidates[is_flipped], candidates[not is_flipped], len(a))
     is_used = np.zeros(len(a), bool)
     is_used[of_a] = True
-    used = np.flatnonzero(is_used & (side_a.sizes > _FEW_POINTS))
-    used = used[~shapely.is_prepared(a[used])]
+    # Copies, since another thread may test the user's own, and those that are prepared are not for several threads.
+    own = is_used & ((side_a.sizes > _FEW_POINTS) | shapely.is_prepared(a))
+    a = a.copy()
+    a[own] = shapely.force_2d(a[own])
+    used = np.flatnonzero(own & (side_a.sizes > _FEW_POINTS))
     if distances is not None:
         limits = distances[of_b if is_flipped else of_a]
         are_points = side_a.are_points and side_b.are_points
@@ -537,10 +540,7 @@ def _tested(
             return np.asarray(getattr(shapely, name)(a[of_a[rows]], b[of_b[rows]]))
 
     shapely.prepare(a[used])
-    try:
-        kept = _on_threads(test, a[used], of_a, threads)
-    finally:
-        shapely.destroy_prepared(a[used])
+    kept = _on_threads(test, of_a, threads)
     found = of_a[kept], of_b[kept]
     return (found[1], found[0]) if is_flipped else found
 
@@ -573,9 +573,7 @@ def _some_vertices(side: _Side) -> NDArray[np.float64]:
     return np.asarray(coordinates[rows])
 
 
-def _on_threads(
-    test: Callable[[slice], NDArray[np.bool_]], prepared: NDArray[Any], of_a: Indices, threads: int | None
-) -> NDArray[np.bool_]:
+def _on_threads(test: Callable[[slice], NDArray[np.bool_]], of_a: Indices, threads: int | None) -> NDArray[np.bool_]:
     """The results of a test of all candidates, block by block. Shapely releases the GIL, so that threads pay."""
     # A block has all tests of its geometries: one that is prepared builds an index at its first test, and two threads
     # must not do that at once.
@@ -583,7 +581,7 @@ def _on_threads(
     blocks = np.unique(ends[np.searchsorted(ends, np.append(np.arange(_BLOCK, len(of_a), _BLOCK), len(of_a)))])
     rows = [slice(start, end) for start, end in zip([0, *blocks[:-1].tolist()], blocks.tolist())]
     number = min(thread_count(threads), os.cpu_count() or 1, len(rows))
-    if number == 1 or len(set(map(id, prepared))) < len(prepared):
+    if number == 1:
         return np.concatenate([test(block) for block in rows])
     from concurrent.futures import ThreadPoolExecutor  # here, since it takes half of the import of this package
 

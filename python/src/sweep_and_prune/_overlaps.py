@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from decimal import Decimal
+from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -201,7 +204,7 @@ def measure_overlaps(
             sides, first, second = _on_circle(sides, first, second, checked_wrap(wrap))
         shared, of_a, of_b = _size(sides), _size(first), _size(second)
         union = of_a + of_b - shared
-        return Overlaps(shared, share_of(shared, of_a), share_of(shared, of_b), share_of(shared, union))
+        return Overlaps(rounded(shared), share_of(shared, of_a), share_of(shared, of_b), share_of(shared, union))
 
 
 def _on_circle(shared: Values, first: Values, second: Values, wrap: float) -> list[Values]:
@@ -267,4 +270,19 @@ def plain_corners(sets: dict[str, Any], format: str) -> list[Values]:
     if kind in "iu":
         is_safe = all(-_SAFE < int(array.min(initial=0)) and int(array.max(initial=0)) < _SAFE for array in arrays)
         return [array.astype(np.int64 if is_safe else object) for array in arrays]
-    return [array if kind == "O" else array.astype(np.float64, copy=False) for array in arrays]
+    return _of_one_kind(arrays) if kind == "O" else [array.astype(np.float64, copy=False) for array in arrays]
+
+
+def _of_one_kind(arrays: list[Values]) -> list[Values]:
+    """Objects of which sums and differences can be computed: Python has none of decimals and floating point."""
+    lists = [array.ravel().tolist() for array in arrays]
+    if not {Decimal, float} <= {type(value) for values in lists for value in values}:
+        return arrays
+    exact = [[Fraction(value) if math.isfinite(value) else float(value) for value in values] for values in lists]
+    return [np.array(values, object).reshape(array.shape) for values, array in zip(exact, arrays)]
+
+
+def rounded(values: Values) -> Values:
+    """Fractions, of which users were given none, as floating point."""
+    are_fractions = values.dtype.kind == "O" and any(type(value) is Fraction for value in values.tolist())
+    return values.astype(np.float64) if are_fractions else values

@@ -442,7 +442,7 @@ def _source(asked: _Asked, number: int, out: Path | None) -> Source:
     if hasattr(boxes, "to_delayed"):
         from ._partitioned.graph import source_of_collection
 
-        return source_of_collection(boxes, columns, ids, asked.names[number], options)
+        return source_of_collection(boxes, columns, ids, asked.names[number], options, out is not None)
     return source_of_files(boxes, columns, ids, options, out)
 
 
@@ -457,10 +457,10 @@ def _found(
     progress: Progress,
 ) -> Any:
     if out is None:
-        if memory_limit is not None or workers is not None:
+        if memory_limit is not None or workers is not None or spill is not None or overwrite:
             raise ValueError(
-                "memory_limit and workers are for pairs that are written: pass out, a folder for them. Without out, "
-                "the workers of Dask and their limits are used"
+                "memory_limit, workers, spill and overwrite are for pairs that are written: pass out, a folder for "
+                "them. Without out, the workers of Dask and their limits are used"
             )
         from ._partitioned.graph import lazy_pairs
 
@@ -497,7 +497,10 @@ def _counted(
         if is_for_dask and memory_limit is None and workers is None and spill is None:
             from ._partitioned.graph import lazy_count
 
-            return lazy_count(sources, _cells(cells), _threads())
+            with _shown(progress, "counting") as report:
+                number = lazy_count(sources, _cells(cells), _threads())
+                report(1.0)
+            return number
         with _shown(progress, "counting") as report:
             return run(sources, Job(None, memory_limit, workers, folder, False, _cells(cells), report)).pairs
 

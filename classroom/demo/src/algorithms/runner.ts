@@ -184,7 +184,8 @@ export class Runner {
     const at = handle.call((exports, runner) => exports.runner_rows(runner, count)) >>> 0;
     if (at === 0) throw new OutOfMemoryError();
     new Float64Array(engine.buffer, at, length).set(rows);
-    engine.check(handle.call((exports, runner) => exports.runner_step(runner, count)));
+    const d = this.#dimensions;
+    engine.check(handle.call((exports, runner) => exports.runner_step(runner, count)), {}, (_, index, axis) => [rows[2 * d * index + axis]!, rows[2 * d * index + d + axis]!]);
     const numbers = new Float64Array(engine.buffer, engine.detail(0), engine.detail(1));
     const [axis = 0, bytes = 0] = numbers;
     const counts = readCounts(numbers, 2);

@@ -151,6 +151,8 @@ export class SapComparisonElement extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     clock.add(this, { frame: (ms) => this.#frame(ms) });
+    // One that was moved within the page goes on.
+    if (this.#isPlaying) clock.wake(this);
   }
 
   override disconnectedCallback(): void {

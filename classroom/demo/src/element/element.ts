@@ -10,7 +10,7 @@ import { press } from "./keys.js";
 import { loadDemos } from "./load.js";
 import { messageOf } from "./option-error.js";
 import { motionQuery } from "./motion-query.js";
-import { asksOfScan, attributes, HEIGHT, hasSeed, newSeed, type Options, readOptions, readStart, readStop, WIDTH } from "./options.js";
+import { asksOfScan, attributes, HEIGHT, hasSeed, MOST_TICKS, newSeed, type Options, readOptions, readStart, readStop, WIDTH } from "./options.js";
 import { paint } from "./paint.js";
 import { Guesses, type Question } from "./predict.js";
 import { addProperties } from "./properties.js";
@@ -161,14 +161,17 @@ export class SapDemoElement extends LitElement {
 
   reset(): void {
     if (this.#comparison) return this.#together((all) => all.reset());
+    if (!this.#run && this.#wrong === "") return;
     this.#begin(!this.#isPlaying);
     this.#speech.soon();
   }
 
   share(): string {
-    const hasMoved = this.#hands.hasMoved && this.#run !== undefined;
-    const start = hasMoved ? 0 : (this.#run?.timeline.tick ?? 0);
-    const balls = hasMoved ? JSON.stringify(this.#run!.rows()) : this.getAttribute("balls");
+    const tick = this.#run?.timeline.tick ?? 0;
+    // What a world that begins anew would not become, or not soon, is shared as it is now.
+    const asIs = this.#run !== undefined && (this.#hands.hasMoved || tick > MOST_TICKS);
+    const start = asIs ? 0 : tick;
+    const balls = asIs ? JSON.stringify(this.#run!.rows()) : this.getAttribute("balls");
     const page = new URL(this.getAttribute("embed-url") ?? "embed.html", document.baseURI);
     const options = this.#run?.options;
     const seed = options && hasSeed(options) ? options.world.seed : undefined;
@@ -255,6 +258,8 @@ export class SapDemoElement extends LitElement {
     this.#comparison = comparisonOf(this);
     if (this.#comparison) this.#leave = this.#comparison.join(this, this.#member);
     else clock.add(this, { frame: (ms) => this.#frame(ms) });
+    // One that was moved within the page goes on.
+    if (!this.#comparison && this.#isPlaying) clock.wake(this);
     motionQuery.addEventListener("change", this.#onMotionChange);
     this.#load();
   }
@@ -275,6 +280,7 @@ export class SapDemoElement extends LitElement {
     super.disconnectedCallback();
     clock.remove(this);
     this.#leave();
+    this.#leave = () => undefined;
     this.#canvases.close();
     motionQuery.removeEventListener("change", this.#onMotionChange);
     this.#speech.stop();

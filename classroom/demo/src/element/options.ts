@@ -103,7 +103,7 @@ const motions: Readonly<Record<Motion, Motion>> = { bounce: "bounce", drift: "dr
 /** The most balls: what each of them is tested against stays in the tens of thousands. */
 const MOST_BALLS = 400;
 const MOST_SKIPPED = 600;
-const MOST_TICKS = 3600;
+export const MOST_TICKS = 3600;
 
 /** The attributes that say what a demo does, all of them text. */
 export const attributes = [

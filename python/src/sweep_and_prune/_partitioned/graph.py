@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from typing import Any
 
 import numpy as np
@@ -18,8 +19,13 @@ from .search import Boxes, in_order, search, touches
 _SAMPLE_OF_PARTITION = 20_000
 
 
-def source_of_collection(collection: Any, columns: Any, ids: str | None, name: str, options: dict[str, Any]) -> Source:
-    """The boxes of a Dask DataFrame or array. Computes each partition once, for its length and a sample."""
+def source_of_collection(
+    collection: Any, columns: Any, ids: str | None, name: str, options: dict[str, Any], is_written: bool = False
+) -> Source:
+    """The boxes of a Dask DataFrame or array. Computes each partition once, for its length and a sample.
+
+    If the pairs are written, also for a digest, by which a later call knows whether it has the same boxes.
+    """
     import dask
 
     if hasattr(collection, "divisions"):
@@ -36,12 +42,13 @@ def source_of_collection(collection: Any, columns: Any, ids: str | None, name: s
         form = Form([], "array", None, "int64", "float32" if collection.dtype == np.float32 else "float64", **options)
         partitions = list(collection.rechunk({1: -1}).to_delayed().ravel())
     lenient = form._replace(missing="skip", ids=None)
-    summaries = dask.compute([dask.delayed(_summary, pure=False)(one, lenient, name) for one in partitions])[0]
-    samples = [sample for _, sample in summaries if len(sample)]
+    summary = dask.delayed(_summary, pure=False)
+    summaries = dask.compute([summary(one, lenient, name, form if is_written else None) for one in partitions])[0]
+    samples = [sample for _, sample, _ in summaries if len(sample)]
     sample = np.concatenate(samples) if samples else None
     meta = getattr(collection, "_meta", None)
     crs = getattr(meta, "crs", None) if form.kind == "geometry" else None
-    return Source([], partitions, [rows for rows, _ in summaries], form, sample, crs)
+    return Source([], partitions, [rows for rows, *_ in summaries], form, sample, crs, [each[2] for each in summaries])
 
 
 def _form_of_frame(meta: Any, columns: Any, ids: str | None, options: dict[str, Any]) -> Form:
@@ -74,14 +81,29 @@ def _form_of_frame(meta: Any, columns: Any, ids: str | None, options: dict[str, 
     return Form(chosen, kind, ids, id_type, "float32" if is_single else "float64", **options)
 
 
-def _summary(table: Any, form: Form, name: str) -> tuple[int, Floats]:
+def _summary(table: Any, form: Form, name: str, digested: Form | None) -> tuple[int, Floats, str]:
     rows = len(table)
+    digest = "" if digested is None else _digest(table, digested, name)
     of_sample = rows_of_sample(rows, max(1, rows // _SAMPLE_OF_PARTITION))
     sampled = table.iloc[of_sample] if hasattr(table, "iloc") else table[of_sample]
     try:
-        return rows, form.read(sampled, name, 0, 0, name).rows
+        return rows, form.read(sampled, name, 0, 0, name).rows, digest
     except ValueError:  # reading the whole partition reports it
-        return rows, np.empty((0, 0))
+        return rows, np.empty((0, 0)), digest
+
+
+def _digest(table: Any, form: Form, name: str) -> str:
+    """A checksum of all coordinates and ids."""
+    known = hashlib.blake2b(digest_size=16)
+    try:
+        columns = [form.raw(table, name).array]
+        if form.ids is not None:
+            columns.append(form.ids_of(table, name, 0))
+    except (TypeError, ValueError):  # reading the whole partition reports it
+        return ""
+    for column in columns:
+        known.update(repr(column.tolist()).encode() if column.dtype.kind == "O" else column.tobytes())
+    return known.hexdigest()
 
 
 def lazy_pairs(sources: list[Source], cells: int | None, least_cells: int) -> Any:

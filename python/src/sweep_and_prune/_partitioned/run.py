@@ -6,7 +6,7 @@ import os
 import shutil
 import tempfile
 import uuid
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -68,6 +68,8 @@ class Source(NamedTuple):
     sample: Floats | None
     crs: Any = None
     """The coordinate reference system, if it is known."""
+    digests: Sequence[str] = ()
+    """Of each partition, where pairs are written."""
 
 
 class Job(NamedTuple):
@@ -141,7 +143,8 @@ def refuse_own_files(paths: Any, files: list[File], out: Path) -> None:
 
 def _request(sources: list[Source], job: Job) -> dict[str, Any]:
     partitions = [getattr(source, "rows", []) if source.partitions else [] for source in sources]
-    return {"version": 1, "cells": job.cells, "partitions": partitions}
+    digests = [[*source.digests] for source in sources]
+    return {"version": 1, "cells": job.cells, "partitions": partitions, "digests": digests}
 
 
 def _is_same(plan: Plan, sources: list[Source], request: dict[str, Any]) -> bool:
