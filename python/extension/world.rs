@@ -98,7 +98,7 @@ impl World {
             let done = space.run(py, count, |world| world.insert_many(count, filter_of(filter)))?;
             let ids = done.map_err(|error| raise(py, error, argument, &[]))?;
             let numbers = numbers(py, ids.iter().map(|&id| PythonId::from_proxy(id).0))?;
-            // A signal that came meanwhile would leave bodies whose ids nobody knows.
+            // A signal that came meanwhile would leave bodies whose ids are lost.
             if let Err(interrupt) = py.check_signals() {
                 space.run(py, count, |world| world.remove_many(&ids))?.ok();
                 return Err(interrupt);

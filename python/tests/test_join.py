@@ -341,7 +341,7 @@ def test_prepared_geometries_are_left_as_they_were() -> None:
     assert [shapely.is_prepared(np.asarray(frame.geometry.array)).tolist() for frame in (left, right)] == before
 
 
-def test_the_geometries_that_are_prepared_are_nobody_elses(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_geometries_that_are_prepared_are_copies(monkeypatch: pytest.MonkeyPatch) -> None:
     shapely = pytest.importorskip("shapely")
     frame = shapes(80, 1)
     users = set(map(id, frame.geometry.array))

@@ -79,7 +79,7 @@ while interrupts < 20:
         return returned[0] if returned else None
 
     ids = interrupted(lambda: world.insert_many(boxes))
-    lost += ids is None and len(world) > 0  # bodies whose ids nobody knows
+    lost += ids is None and len(world) > 0  # bodies whose ids are lost
     if len(world) == 0:
         world.insert_many(boxes)
     changes = interrupted(world.update)

@@ -14,7 +14,10 @@ export interface PixiObject {
 
 /** A `Container` that holds others. */
 export interface PixiParent {
+  /** Whether what it holds is drawn. */
   readonly visible: boolean;
+
+  /** What it is in. */
   readonly parent?: PixiParent | null;
 }
 

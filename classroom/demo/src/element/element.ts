@@ -168,7 +168,7 @@ export class SapDemoElement extends LitElement {
 
   share(): string {
     const tick = this.#run?.timeline.tick ?? 0;
-    // What a world that begins anew would not become, or not soon, is shared as it is now.
+    // What a world that starts over would not become, or not soon, is shared as it is now.
     const asIs = this.#run !== undefined && (this.#hands.hasMoved || tick > MOST_TICKS);
     const start = asIs ? 0 : tick;
     const balls = asIs ? JSON.stringify(this.#run!.rows()) : this.getAttribute("balls");
