@@ -15,6 +15,8 @@ const box = { minX: 0, minY: 0, maxX: 1, maxY: 1 };
 const cube = { minX: 0, minY: 0, minZ: 0, maxX: 1, maxY: 1, maxZ: 1 };
 const flat = new Float32Array([0, 0, 2, 2, 5, 5, 6, 6, 2, 1, 3, 4]);
 
+class Sprite {}
+
 /** @type {[what: string, call: () => unknown, message: RegExp][]} */
 const searches = [
   ["a typo in an edge", () => any.findPairs([{ minX: 0, miny: 0, maxX: 1, maxY: 1 }]), /^TypeError: boxes\[0\] has `maxY` but no `minY`/],
@@ -30,7 +32,7 @@ const searches = [
   ["an edge that is undefined", () => any.findPairs([{ minX: undefined }]), /^TypeError: minX of boxes\[0\] must be a number, not undefined/],
   ["a sprite of Phaser", () => any.findPairs([{ x: 0, y: 0, width: 2, height: 2, originX: 0.5, originY: 0.5 }]), /^TypeError: boxes\[0\] does not begin at its position: pass its `getBounds\(\)`/],
   ["a sprite of Pixi", () => any.findPairs([{ x: 0, y: 0, width: 2, height: 2, anchor: { x: 0, y: 1 } }]), /^TypeError: boxes\[0\] does not begin at its position/],
-  ["a later sprite", () => any.findPairs([box, { x: 0, y: 0, width: 2, height: 2, originX: 0.5, originY: 0.5 }]), /^TypeError: boxes\[1\] does not begin at its position/],
+  ["a later sprite", () => any.findPairs([box, Object.assign(new Sprite(), { x: 0, y: 0, width: 2, height: 2, originX: 0.5, originY: 0.5 })]), /^TypeError: boxes\[1\] does not begin at its position/],
   ["a sprite as a body", () => any.world().insert({ x: 0, y: 0, width: 2, height: 2, originX: 0, originY: 0.5 }), /^TypeError: `box` does not begin at its position/],
   ["sprites as bodies", () => any.world().insertMany([{ x: 0, y: 0, width: 2, height: 2, originX: 1, originY: 0 }]), /^TypeError: boxes\[0\] does not begin at its position/],
   ["2D and 3D", () => any.findPairs([box, cube]), /^TypeError: boxes\[1\] is in 3D and others in 2D/],

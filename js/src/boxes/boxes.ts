@@ -158,7 +158,8 @@ export function isNamed(value: unknown): value is object {
  */
 export function readBox(box: object, dimensions: Dimensions, name: string, into: Float64Array, at: number, index: number): Form {
   const form = formOf(box, name, index);
-  if (form === rectangle) refuseOrigin(box, name, index);
+  // A sprite has a class; of plain objects, which are alike, the first is looked at.
+  if (form === rectangle && (index <= 0 || box.constructor !== Object)) refuseOrigin(box, name, index);
   for (const corner of [0, 1] as const) {
     for (let axis = 0; axis < dimensions; axis++, at++) {
       const value = form.read(box, corner, axis);

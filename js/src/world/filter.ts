@@ -37,7 +37,7 @@ export function filterWords(filter: Partial<Filter>, others: Filter): FilterWord
   const { category = others.category, mask = others.mask, group = others.group, isStatic = others.isStatic } = filter;
   // Bits may be written as signed numbers too: ~2 is all but the second.
   for (const [name, bits] of Object.entries({ category, mask, group })) {
-    const limit = name === "group" ? 2 ** 31 : 2 ** 32; // the sign of a group has a meaning
+    const limit = 2 ** (name === "group" ? 31 : 32); // the sign of a group has a meaning
     if (!(Number.isInteger(bits) && bits >= -(2 ** 31) && bits < limit)) {
       throw new RangeError(`\`${name}\` of the filter is ${describe(bits)}; it must be a whole number below ${limit}`);
     }

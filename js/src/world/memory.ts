@@ -124,11 +124,8 @@ export class WorldMemory {
 
   /** Updates, and writes what changed. */
   update(into: Changes): void {
-    this.call((exports, world) => {
-      const code = exports.world_update(world, this.#failures);
-      this.#failures++; // until all has arrived; not where the call threw, which then changed nothing
-      return code;
-    });
+    // Counted until all has arrived; not where the call throws, which then changed nothing.
+    this.call((exports, world) => [exports.world_update(world, this.#failures), this.#failures++][0]!);
     const { engine } = this;
     const [at, total, begun] = [engine.detail(0), engine.detail(1), this.numbers()[0]!];
     into.begun = this.give(at, begun);

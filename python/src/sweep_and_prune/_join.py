@@ -500,7 +500,7 @@ def _tested(
     # Copies, since another thread may test the user's own, and those that are prepared are not for several threads.
     own = is_used & ((side_a.sizes > _FEW_POINTS) | shapely.is_prepared(a))
     a = a.copy()
-    a[own] = shapely.force_2d(a[own])
+    a[own] = shapely.set_srid(a[own], 0)  # a clone
     used = np.flatnonzero(own & (side_a.sizes > _FEW_POINTS))
     if distances is not None:
         limits = distances[of_b if is_flipped else of_a]
