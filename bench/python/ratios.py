@@ -196,6 +196,14 @@ def cases(sizes: list[int], only: str) -> Iterator[tuple[str, int, dict[str, Cal
                 yield name, count, calls
 
 
+def is_near(wanted: int, found: int) -> bool:
+    """Whether two numbers of pairs may be those of the same boxes.
+
+    Sums of squares' edges are rounded: one pair in a million touches for one library only.
+    """
+    return abs(found - wanted) <= wanted * 1e-6 + 1
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--sizes", type=int, nargs="+", default=[1000, 10_000, 100_000, 1_000_000])
@@ -207,9 +215,13 @@ def main() -> None:
     content |= {"versions": versions(PACKAGES), "cases": []}
     for name, count, calls in cases(options.sizes, options.only):
         counts = {library: len(call()) for library, call in calls.items()}
-        wanted = counts[OWN]
-        # Sums of squares' edges are rounded: one pair in a million touches for one library only.
-        wrong = {library: found for library, found in counts.items() if abs(found - wanted) > wanted * 1e-6 + 1}
+        # What most find; if no two agree, what this package finds.
+        wanted = max(
+            (counts[OWN], *counts.values()), key=lambda number: sum(is_near(number, one) for one in counts.values())
+        )
+        wrong = {library: found for library, found in counts.items() if not is_near(wanted, found)}
+        if OWN in wrong:
+            raise SystemExit(f"{name}, {count}: {OWN} finds {wrong[OWN]}, and most find {wanted}: {counts}")
         if wrong:
             note(f"{name}, {count}: {OWN} finds {wanted}, but {wrong}: left out")
         calls = {library: call for library, call in calls.items() if library not in wrong}

@@ -198,7 +198,8 @@ impl Comparison<'_> {
             self.seeds,
         )?;
         let limit = match self.kind {
-            Kind::Pairs | Kind::Intervals => self.limit,
+            // For each frame, and once more for what else a check does.
+            Kind::Pairs | Kind::Intervals => (self.frames_checked() as u32 + 1) * self.limit,
             Kind::Worlds | Kind::Statics => {
                 WORLD_CHECK * self.limit + CHECK_OF_BOX * self.boxes as u32
             }
@@ -213,6 +214,9 @@ impl Comparison<'_> {
             }) => {
                 let first = Duration::from_nanos(nanoseconds);
                 slow.insert(key, (self.boxes, first));
+                if matches!(self.kind, Kind::Pairs | Kind::Intervals) && first > self.limit {
+                    return Ok(Err(too_slow));
+                }
                 Ok(Ok(Running {
                     info,
                     worker,
@@ -276,7 +280,11 @@ impl Comparison<'_> {
             }
         }
         Ok(witnesses.iter().enumerate().find_map(|(at, one)| {
-            let other = witnesses[at + 1..].iter().find(|it| it.fingerprint == one.fingerprint)?;
+            let other = witnesses[at + 1..].iter().find(|it| {
+                // Two settings of one library may share a fault.
+                let is_another = it.info.package.is_none() || it.info.package != one.info.package;
+                is_another && it.fingerprint == one.fingerprint
+            })?;
             Some((format!("{} and {} agree", other.info.name, one.info.name), one.fingerprint?))
         }))
     }

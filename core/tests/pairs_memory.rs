@@ -1,9 +1,9 @@
-//! What the finder allocates: nothing in a steady state, and before no more than documented.
+//! What the finder and many queries allocate: the finder nothing in a steady state, and before no more than documented.
 
 use std::ops::ControlFlow;
 
 use allocation_counter::measure;
-use sweep_and_prune::{Aabb, Error, PairFinder, Scalar};
+use sweep_and_prune::{Aabb, BroadPhase, Error, Filter, Lists, PairFinder, Scalar};
 use sweep_and_prune_scenes::Scene;
 
 fn scene<const D: usize, T: Scalar>(scene: Scene, n: usize, seed: u64) -> Vec<Aabb<D, T>> {
@@ -115,4 +115,24 @@ fn too_little_memory_is_an_error() {
     let out = std::process::Command::new("sh").arg("-c").arg(limited).arg(this).output().unwrap();
     let said = String::from_utf8_lossy(&out.stdout);
     assert!(out.status.success() && said.contains("went on"), "{said}{out:?}");
+}
+
+#[test]
+fn many_queries_take_no_memory_for_bodies_that_they_do_not_see() {
+    let crowd = vec![Aabb::new([0.0; 2], [1.0; 2]); 33_000];
+    let mut world = BroadPhase::<2>::new();
+    let ids = world.insert_many(&crowd, Filter::default()).unwrap();
+    for &id in &ids {
+        world.set_enabled(id, false).unwrap();
+    }
+    world.update();
+    world.prepare_queries();
+    let areas = &crowd[..8_250];
+    let asked = measure(|| {
+        let mut lists = Lists::new();
+        world.queries().overlapping_many(areas, &mut lists).unwrap();
+        assert!((0..lists.len()).all(|query| lists[query].is_empty()));
+    });
+    // All pairs would take 2 GB.
+    assert!(asked.bytes_max < 100 << 20, "{} bytes", asked.bytes_max);
 }

@@ -40,6 +40,7 @@ impl IntervalLibrary {
             how: self.how,
             alternative: self.alternative,
             version: self.origin.version(),
+            package: self.origin.package(),
             dimensions: vec![1],
         }
     }

@@ -75,6 +75,8 @@ pub struct LibraryInfo {
     pub alternative: bool,
     /// The version that was compiled in, or its origin.
     pub version: String,
+    /// The crate or Debian package that it is from; `None` for this repository.
+    pub package: Option<&'static str>,
     /// The numbers of dimensions in which it exists.
     pub dimensions: Vec<usize>,
 }
@@ -88,12 +90,21 @@ impl<Two, Three> Library<Two, Three> {
             how: self.how,
             alternative: self.alternative,
             version: self.origin.version(),
+            package: self.origin.package(),
             dimensions: exists.iter().filter(|(_, it)| *it).map(|&(count, _)| count).collect(),
         }
     }
 }
 
 impl Origin {
+    /// The crate or Debian package, if it is one.
+    pub fn package(&self) -> Option<&'static str> {
+        match *self {
+            Origin::Here => None,
+            Origin::Crate(name) | Origin::Debian(name) => Some(name),
+        }
+    }
+
     /// The version that was compiled in, or the origin.
     pub fn version(&self) -> String {
         match self {
