@@ -274,8 +274,7 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
         sink: &mut O,
     ) -> Result<(), Stop> {
         check(sets, task)?;
-        self.sort_and_sweep(sets, axis, usize::MAX, task, sink)?;
-        task.done(1.0)
+        self.sort_and_sweep(sets, axis, usize::MAX, task, sink)
     }
 
     /// Copies the boxes to the columns of a grid and finds the pairs of each column.
@@ -364,14 +363,16 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
     ) -> Result<(), Stop> {
         while start < end {
             let shared = filled.next_shared(start..end);
-            if let Some(column) = shared {
-                let (records, sets) = filled.column(column);
-                let records = &records[..sets];
-                self.sort_and_sweep(records, filled.grid.sweep, filled.crowd, task, sink)?;
-            }
             let next = shared.map_or(end, |column| column + 1);
-            if task.progress.is_some() {
-                task.done(filled.share(start..next))?;
+            let share = if task.progress.is_some() { filled.share(start..next) } else { 0.0 };
+            let task = Task { share: task.share * share, ..task };
+            match shared {
+                Some(column) => {
+                    let (records, sets) = filled.column(column);
+                    let records = &records[..sets];
+                    self.sort_and_sweep(records, filled.grid.sweep, filled.crowd, task, sink)?;
+                }
+                None => task.done(1.0)?,
             }
             start = next;
         }
@@ -379,7 +380,7 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
     }
 
     /// Sorts and sweeps boxes, or plans them again if there are more than `crowd`, or if another plan
-    /// would leave fewer tests.
+    /// would leave fewer tests. Reports the whole task as done, where boxes are planned again part by part.
     fn sort_and_sweep<S: Source<D, T>, O: Receiver>(
         &mut self,
         sets: &[&[S]],
@@ -389,7 +390,7 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
         sink: &mut O,
     ) -> Result<(), Stop> {
         if sets.iter().any(|set| set.is_empty()) {
-            return Ok(());
+            return task.done(1.0);
         }
         let boxes: usize = sets.iter().map(|set| set.len()).sum();
         let is_divided = boxes < task.boxes - task.boxes / UNDIVIDED_ONE_IN;
@@ -397,7 +398,7 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
         if boxes > crowd && is_divided && task.depth < MOST_NESTED_PLANS {
             let (plan, _) = plan(sets, among);
             if plan.divides() {
-                return self.run_plan(plan, sets, task.nested(0.0, boxes), sink);
+                return self.run_plan(plan, sets, task.nested(1.0, boxes), sink);
             }
         }
         for (&set, sorted) in sets.iter().zip(&mut self.sorted) {
@@ -410,7 +411,7 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
             && task.depth < MOST_NESTED_PLANS
             && let Some(plan) = better_plan(sets, sorted, tests, axis, among)
         {
-            return self.run_plan(plan, sets, task.nested(0.0, boxes), sink);
+            return self.run_plan(plan, sets, task.nested(1.0, boxes), sink);
         }
         self.probe.swept(sorted);
         if !P::SWEEPS {
@@ -424,10 +425,11 @@ impl<const D: usize, T: Scalar, P: Probe> Driver<D, T, P> {
             Some(threads) if tests >= Some(MIN_TESTS_FOR_THREADS) => {
                 threads.in_chunks(0..boxes, PROBES_AT_A_TIME, sink, |probes, sink| {
                     sweep.run::<D, T, _>(sorted, Cursor::of(sorted, probes), sink)
-                })
+                })?;
             }
-            _ => sweep.run::<D, T, _>(sorted, Cursor::default(), sink),
+            _ => sweep.run::<D, T, _>(sorted, Cursor::default(), sink)?,
         }
+        task.done(1.0)
     }
 
     /// Splits the boxes of a set by their size on an axis and searches the two groups separately, and

@@ -553,6 +553,13 @@ fn a_progress_callback_hears_of_progress_and_cancels_the_search() {
         assert_eq!(count, Ok(0), "{name}");
         assert_eq!(shares.into_inner().unwrap(), [1.0], "{name}");
     }
+    // Most lie in one column of the first plan, which is planned again: its parts are reported.
+    let shrunk =
+        |aabb: &Aabb<3, f64>| Aabb::new(aabb.min.map(|x| x * 1e-5), aabb.max.map(|x| x * 1e-5));
+    let cluster: Boxes<3, f64> = boxes.iter().take(54_000).map(shrunk).collect();
+    let clustered: Boxes<3, f64> = cluster.into_iter().chain(b[..6_000].to_vec()).collect();
+    let shares = reported(&mut PairFinder::new(), (&clustered, None), |search| search.count());
+    assert!(shares.len() > 10 && *shares.last().unwrap() > 0.95, "{shares:?}");
     // One column full of pairs: the callback is called while they are found.
     let heap = vec![Aabb::new([0.0f32], [1.0]); 20_000];
     let asked = Mutex::new(0);
