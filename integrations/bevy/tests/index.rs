@@ -204,12 +204,18 @@ fn an_entity_that_a_component_of_the_app_disables_leaves_the_index_until_it_is_e
     assert_eq!(drain::<OverlapEnded<1>>(app.world_mut()).len(), 1);
 }
 
-#[test]
-fn entities_can_be_despawned_while_a_user_has_the_index() {
+/// An app that was updated, with one entity in its index.
+fn app_with_entity() -> (App, Entity) {
     let mut app = App::new();
     app.add_plugins(SpatialIndexPlugin::<1>::default());
     let entity = app.world_mut().spawn(BoundingBox(Aabb::new([0.0], [1.0]))).id();
     app.update();
+    (app, entity)
+}
+
+#[test]
+fn entities_can_be_despawned_while_a_user_has_the_index() {
+    let (mut app, entity) = app_with_entity();
     app.world_mut().resource_scope(|world, index: Mut<SpatialIndex<1>>| {
         for found in index.containing([0.5]).expect("a valid point") {
             world.despawn(found);
@@ -221,10 +227,7 @@ fn entities_can_be_despawned_while_a_user_has_the_index() {
 
 #[test]
 fn an_entity_is_rejected_once_however_much_of_it_has_changed() {
-    let mut app = App::new();
-    app.add_plugins(SpatialIndexPlugin::<1>::default());
-    let entity = app.world_mut().spawn(BoundingBox(Aabb::new([0.0], [1.0]))).id();
-    app.update();
+    let (mut app, entity) = app_with_entity();
     let mut changed = app.world_mut().entity_mut(entity);
     changed.insert(Disabled).remove::<Disabled>().insert(BoundingBox(Aabb::new([1.0], [0.0])));
     app.update();

@@ -323,7 +323,7 @@ def _of_objects(items: list[Any]) -> Column:
     never_missing = set(map(type, items)) <= {int, str, bool, bytes}
     missing = np.zeros(0, bool) if never_missing else np.fromiter(map(is_missing_value, items), bool, len(items))
     present = [item for item, is_none in zip(items, missing.tolist()) if not is_none] if missing.any() else items
-    found = _exact_numbers(present) or _exact_times(present) or Column(_objects(present))
+    found = _exact_numbers(present) or _exact_times(present) or Column(objects_of(present))
     if len(present) == len(items):
         return found
     values = np.zeros(len(items), found.values.dtype)
@@ -331,7 +331,8 @@ def _of_objects(items: list[Any]) -> Column:
     return found._replace(values=values, missing=missing)
 
 
-def _objects(items: Sequence[Any]) -> NDArray[Any]:
+def objects_of(items: Sequence[Any]) -> NDArray[Any]:
+    """An array of objects, which may be lists."""
     array = np.empty(len(items), object)
     for index, item in enumerate(items):  # an assignment of all would look into those that are sequences
         array[index] = item
@@ -359,15 +360,15 @@ def _exact_numbers(items: list[Any]) -> Column | None:
                 return Column(np.array(items, dtype))
             except OverflowError:
                 pass
-        return Column(_objects(items))
+        return Column(objects_of(items))
     try:
         floats = np.array([float(item) for item in items])
     except OverflowError:
-        return Column(_objects(items))
+        return Column(objects_of(items))
     # Comparing Python's numbers of different types is exact. Sums with exact types must not be rounded, either.
     are_exact = not any(issubclass(kind, (float, np.floating)) for kind in kinds)
     is_rounded = floats.tolist() != items or (are_exact and bool((np.abs(floats) >= EXACT).any()))
-    return Column(_objects(items) if is_rounded else floats)
+    return Column(objects_of(items) if is_rounded else floats)
 
 
 def _is_number(kind: type) -> bool:

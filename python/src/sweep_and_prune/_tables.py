@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _crs
-from ._columns import Column, read_column, side_by_side
+from ._columns import Column, objects_of, read_column, side_by_side
 from ._file_error import FileError
 from ._inputs import Raw, box_columns, chosen_boxes, listed, raw_boxes, unknown_columns
 from ._text import (
@@ -184,7 +184,7 @@ class Source:
         if isinstance(self.values, Text):
             return self.values.label(name)
         values = self._labels(name)
-        return _objects([_written(one) for one in values.to_pylist()]) if _is_nested(values) else _label_of(values)
+        return objects_of([_written(one) for one in values.to_pylist()]) if _is_nested(values) else _label_of(values)
 
     def typed_label(self, name: str) -> Any:
         """A column as it is written where columns have types: one of text that has plain numbers becomes numbers."""
@@ -199,7 +199,7 @@ class Source:
             return self._column(name)
         values = self.labels[name]
         is_nested = isinstance(values, np.ndarray) and any(isinstance(one, (list, dict)) for one in values.tolist())
-        return _objects([_written(one) for one in values.tolist()]) if is_nested else values
+        return objects_of([_written(one) for one in values.tolist()]) if is_nested else values
 
     def _column(self, name: str) -> Any:
         """The numbers of a column."""
@@ -260,7 +260,7 @@ def _label_of(values: Any) -> Any:
         return Zoned(values)
     has_missing = types.is_timestamp(kind) or types.is_date(kind) or types.is_duration(kind)
     if values.null_count and not has_missing:  # as an array of NumPy, integers would become floating point
-        return _objects(values.to_pylist())
+        return objects_of(values.to_pylist())
     return np.asarray(values)
 
 
@@ -530,14 +530,7 @@ def _features(document: Any) -> list[Any] | None:
 
 def _labels_of(rows: list[dict[str, Any]]) -> dict[str, Any]:
     """The values of each name in any of the rows."""
-    return {name: _objects([row.get(name) for row in rows]) for name in sorted({key for row in rows for key in row})}
-
-
-def _objects(values: list[Any]) -> NDArray[Any]:
-    array = np.empty(len(values), object)
-    for at, value in enumerate(values):  # an assignment of all would look into those that are lists
-        array[at] = value
-    return array
+    return {name: objects_of([row.get(name) for row in rows]) for name in sorted({key for row in rows for key in row})}
 
 
 def _written(value: Any) -> Any:

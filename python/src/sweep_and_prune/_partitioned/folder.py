@@ -18,11 +18,12 @@ REPLACED = "_replaced"
 """The dataset that a finished run is about to replace."""
 _SPILL = "_spill.json"
 _SPILL_FOLDER = "spill"
-_LOCK = "lock"
+LOCK = "lock"
+"""The file that one process has while it uses a folder."""
 
 _NODE = r"cell-(\d{5,}|wide)(\.(\d{5,}|wide))*"
 _RESULT = re.compile(rf"(everything|nothing|{_NODE})\.parquet|_{_NODE}\.split\.json")
-_NOTE = re.compile("|".join(map(re.escape, (_LOCK, PLAN, MANIFEST, _SPILL))))
+_NOTE = re.compile("|".join(map(re.escape, (LOCK, PLAN, MANIFEST, _SPILL))))
 _SPILLED = re.compile(rf"(chunk-(?P<chunk>\d{{6,}})|{_NODE}-[01])\.(arrow|json)")
 
 
@@ -88,14 +89,14 @@ def claimed(work: Path) -> Iterator[Plan | None]:
     """
     _check(work)
     work.mkdir(parents=True, exist_ok=True)
-    with locked(work / _LOCK):
+    with locked(work / LOCK):
         plan = _check(work)
         _remove(work, lambda name: re.fullmatch(re.escape(PLAN) + PART, name) or _is_part(plan, name))
         try:
             yield plan
         except BaseException:
-            if work.is_dir() and set(os.listdir(work)) <= {_LOCK}:  # nothing was done
-                (work / _LOCK).unlink(missing_ok=True)
+            if work.is_dir() and set(os.listdir(work)) <= {LOCK}:  # nothing was done
+                (work / LOCK).unlink(missing_ok=True)
                 with suppress(OSError):
                     work.rmdir()
             raise
@@ -121,7 +122,7 @@ def _check(work: Path) -> Plan | None:
         name
         for name in os.listdir(work)
         if not re.fullmatch(re.escape(PLAN) + PART, name)
-        and not (name == _LOCK and (work / name).is_file() and (work / name).stat().st_size == 0)
+        and not (name == LOCK and (work / name).is_file() and (work / name).stat().st_size == 0)
     ]
     if others:
         raise DatasetError(
@@ -267,7 +268,7 @@ def has_results(plan: Plan, work: Path) -> bool:
 def start_over(plan: Plan, work: Path) -> None:
     """Removes the files of a run, its plan at last."""
     _remove_spill(plan, work)
-    _remove(work, lambda name: name not in (_LOCK, PLAN) and is_of_run(plan, name))
+    _remove(work, lambda name: name not in (LOCK, PLAN) and is_of_run(plan, name))
     (work / PLAN).unlink(missing_ok=True)
 
 

@@ -32,7 +32,7 @@ from .._text import GENOMIC, Text
 from .boxes import File, Form, InvalidRowError, form_of_files, opened
 from .dataset import DatasetError
 from .files import PART, part_of, read_sealed, write_sealed
-from .folder import locked
+from .folder import LOCK, locked
 from .run import Source
 
 _ROWS = 2**17
@@ -40,7 +40,6 @@ _ROWS = 2**17
 _BYTES_OF_GROUP = 400
 """The memory that a group takes while its number is looked up."""
 _NOTE = "_boxes.json"
-_LOCK = "lock"
 _BOXES = re.compile(rf"([01]\.parquet|{re.escape(_NOTE)})({PART})?")
 _AXES = "xyzw"
 _EPOCH = 10**18
@@ -352,7 +351,7 @@ def plain_boxes(
             key = _key(wanted, options)
             _refuse_others(folder)
             folder.mkdir(parents=True, exist_ok=True)
-            stack.enter_context(locked(folder / _LOCK))
+            stack.enter_context(locked(folder / LOCK))
             noted = _noted(folder, key)
             if noted is None:
                 _remove_boxes(folder)
@@ -377,13 +376,13 @@ def plain_boxes(
 def _refuse_others(folder: Path) -> None:
     """Raises an error if a folder has other files than those of a run, which has a lock."""
     names = os.listdir(folder) if os.path.lexists(folder) else []
-    if names and not (_LOCK in names and all(name == _LOCK or _BOXES.fullmatch(name) for name in names)):
+    if names and not (LOCK in names and all(name == LOCK or _BOXES.fullmatch(name) for name in names)):
         raise DatasetError(f"{folder} exists and has other files: rename it, or choose another out")
 
 
 def _remove(folder: Path) -> None:
     _remove_boxes(folder)
-    (folder / _LOCK).unlink(missing_ok=True)
+    (folder / LOCK).unlink(missing_ok=True)
     with suppress(OSError):  # it has something else
         folder.rmdir()
 
