@@ -10,11 +10,11 @@ const root = dirname(dirname(fileURLToPath(import.meta.url)));
 const read = (path) => readFileSync(join(root, path), "utf8");
 const DOCUMENTS = ["README.md", "core/README.md", "js/README.md", "python/README.md", "CHANGELOG.md"];
 
-/** The rows of the table under a heading, as lists of cells. */
+/** The rows of the first table under a heading, as lists of cells. */
 function table(text, heading) {
   const section = text.split(/^#+ /m).find((it) => it.startsWith(heading));
   assert.ok(section, `the results have no section "${heading}"`);
-  const rows = section.split("\n").filter((line) => line.startsWith("|"));
+  const rows = section.slice(section.indexOf("\n|") + 1).split(/\n(?!\|)/, 1)[0].split("\n");
   return rows.slice(2).map((row) => row.split("|").slice(1, -1).map((cell) => cell.trim()));
 }
 
@@ -28,9 +28,10 @@ const uniform = new Map(
 );
 const means = new Map(table(rust, "How many times slower").map(([boxes, , mean, , least]) => [boxes, { mean, least }]));
 const open = new Set(table(rust, "Against the fastest alternative").map(([scene]) => scene));
-const gains = table(rust, "Two threads")
-  .filter(([scene, boxes]) => open.has(scene) && boxes === "100,000")
-  .map((row) => Number(row[4]));
+const twoThreads = table(rust, "Two threads").filter(([, boxes]) => boxes === "100,000");
+const gains = twoThreads.filter(([scene]) => open.has(scene)).map((row) => Number(row[4]));
+const allGains = twoThreads.map((row) => Number(row[4]));
+const geometricMean = (numbers) => Math.exp(numbers.reduce((sum, number) => sum + Math.log(number), 0) / numbers.length);
 /** By "fast 3D 10,000" the row of that motion. */
 const worlds = new Map(table(rust, "Against finding all pairs from scratch").map((row) => [`${row[0]} ${row[1]}`, row]));
 const inJavaScript = new Map(
@@ -74,8 +75,17 @@ const CLAIMS = [
   },
   {
     name: "what two threads gain at 100,000 boxes, on the scenes that every library is measured on",
-    pattern: /two threads (?:gain|are) ([\d.]+) to ([\d.]+) times(?: faster than one at 100,000 boxes)?/gi,
+    pattern: /two threads gain ([\d.]+) to ([\d.]+) times/gi,
     check: ([, least, most]) => isRange(least, most, gains),
+  },
+  {
+    name: "what two threads gain at 100,000 boxes, on all scenes",
+    pattern: /and ([\d.]+) to ([\d.]+) times on all (\d+) \(([\d.]+) times in the geometric mean; on (\w+) scenes two are slower/g,
+    check: ([, least, most, scenes, mean, slower]) =>
+      isRange(least, most, allGains) &&
+      Number(scenes) === allGains.length &&
+      isRounded(mean, geometricMean(allGains)) &&
+      ["no", "one", "two", "three", "four", "five", "six"][allGains.filter((gain) => gain < 1).length] === slower,
   },
   {
     name: "BroadPhase against from scratch if all bodies fly or some jump, at three sizes",
@@ -91,9 +101,11 @@ const CLAIMS = [
   },
   {
     name: "BroadPhase against from scratch if all bodies drift",
-    pattern: /At ([\d,]+) it takes longer even if all drift slowly: ([\d.]+) times as long/g,
-    check: ([, bodies, written]) =>
-      ["drift 2D", "drift 3D"].every((motion) => isRounded(written, worlds.get(`${motion} ${bodies}`)[4])),
+    pattern: /At ([\d,]+) it takes longer even if all drift slowly: ([\d.]+) times as long, and ([\d.]+) times at ([\d,]+) in 2D/g,
+    check: ([, bodies, written, in2D, fewer]) =>
+      ["drift 2D", "drift 3D"].every((motion) => isRounded(written, worlds.get(`${motion} ${bodies}`)[4])) &&
+      isRounded(in2D, worlds.get(`drift 2D ${fewer}`)[4]) &&
+      Number(worlds.get(`drift 3D ${fewer}`)[4]) < 1,
   },
   {
     name: "JavaScript: rows of the scene uniform",
@@ -111,6 +123,15 @@ const CLAIMS = [
       const rows = ["mostly-still", "drift", "fast", "teleport"].map((motion) => inJavaScript.get(`${motion} 2D 10,000`));
       const scratch = rows.map((row) => Number(row[3]));
       return rows.every((row, at) => row[4] === written[at]) && isRange(written[4], written[5], scratch);
+    },
+  },
+  {
+    name: "JavaScript: a frame of BroadPhase against from scratch",
+    pattern: /^\| (all drift slowly|5 % jump anywhere, or all move fast) \| ([\d.]+) to ([\d.]+) times/gm,
+    check: ([, how, least, most]) => {
+      const motions = how.startsWith("all") ? ["drift"] : ["fast", "teleport"];
+      const rows = [...inJavaScript].filter(([name]) => motions.includes(name.split(" ")[0])).map(([, row]) => row);
+      return rows.length > 0 && isRange(least, most, rows.map((row) => Number(row[4]) / Number(row[3])));
     },
   },
   {

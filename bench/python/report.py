@@ -8,6 +8,7 @@ from textwrap import shorten
 from typing import Any
 
 from common import FOLDER, RESULTS
+from ratios import SLOW
 
 OWN = "sweep-and-prune"
 
@@ -62,17 +63,22 @@ def ratios(
         "its own median time, and the most memory beyond its input.",
         "",
     ]
+    tried = {name for case in content["cases"] for name in case["results"]} & SLOW.keys()
+    if title == "In memory" and tried:
+        limits = ", ".join(f"{name} beyond {SLOW[name]:,}" for name in sorted(tried))
+        lines += [f"Not tried with more boxes, for which a round takes more than a minute: {limits}.", ""]
     for case in sorted({case["case"] for case in content["cases"]}):
         lines += [f"### {case}", "", "| boxes | found | library | ratio | time | memory |", "|--:|--:|---|--:|--:|--:|"]
         for one in (one for one in content["cases"] if one["case"] == case):
+            boxes = f"{one['boxes']:,}" + (f", {one['scenes']} scenes" if "scenes" in one else "")
             for library, result in one["results"].items():
                 lines.append(
-                    f"| {one['boxes']:,} | {one['found']:,} | {library} | {result['ratio']:.2f} "
+                    f"| {boxes} | {one['found']:,} | {library} | {result['ratio']:.2f} "
                     f"| {seconds(result['median_seconds'])} | {size(result['peak_bytes'])} |"
                 )
             for library, found in one["wrong"].items():
                 shown = f"{found:,}" if isinstance(found, int) else found
-                lines.append(f"| {one['boxes']:,} | {one['found']:,} | {library} | finds {shown}: not timed | | |")
+                lines.append(f"| {boxes} | {one['found']:,} | {library} | finds {shown}: not timed | | |")
         lines += ["", *([f"![{case}]({plot(content, case, prefix, machine)})", ""] if has_plots else [])]
     return lines
 

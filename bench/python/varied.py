@@ -83,13 +83,6 @@ def region_set(boxes: Any) -> Any:
     return RegionSet.from_vectors(["chr1"] * len(boxes), *(column.tolist() for column in columns(boxes)))
 
 
-def interval_map(boxes: Any) -> Any:
-    """Superintervals has closed intervals."""
-    from superintervals import IntervalMap
-
-    return IntervalMap.from_arrays(*closed(boxes), np.arange(len(boxes)))
-
-
 def closed(boxes: Any) -> tuple[Any, Any]:
     """Starts and ends of closed intervals, as superintervals takes them."""
     starts, ends = columns(boxes)
@@ -101,8 +94,10 @@ def closed(boxes: Any) -> tuple[Any, Any]:
 
 def superintervals(function: str) -> Prepare:
     def prepare(a: Any, b: Any) -> Any:
-        asked = closed(a)
-        return lambda: getattr(interval_map(b), function)(*asked)
+        from superintervals import IntervalMap
+
+        asked, indexed, rows = closed(a), closed(b), np.arange(len(b))
+        return lambda: getattr(IntervalMap.from_arrays(*indexed, rows), function)(*asked)
 
     return prepare
 

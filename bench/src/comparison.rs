@@ -85,7 +85,8 @@ pub struct Comparison<'a> {
     pub bar: &'a ProgressBar,
 }
 
-/// How long a library took for a number of boxes of a scene; infinite if it was stopped.
+/// How long a library took for a number of boxes of a scene; infinite if it was stopped. Of a world only that it was: its
+/// first updates may build what later ones use.
 pub type Slow = HashMap<(Kind, String, usize, &'static str), (usize, Duration)>;
 
 /// A library whose worker runs.
@@ -149,6 +150,14 @@ impl Comparison<'_> {
             self.bar.inc(1);
         }
 
+        if matches!(self.kind, Kind::Pairs | Kind::Intervals) {
+            // Not the first call, which may have had to get its memory.
+            for library in running.iter().filter(|library| !library.rounds.is_empty()) {
+                let rounds: Vec<_> = library.rounds.iter().map(|&(_, time)| time).collect();
+                let took = Duration::from_nanos(median(&rounds) as u64);
+                slow.insert(self.key(library.info), (self.boxes, took));
+            }
+        }
         let own: HashMap<usize, f64> = running
             .iter()
             .find(|library| library.info.name == THIS_CRATE)
@@ -181,8 +190,19 @@ impl Comparison<'_> {
         info: &'a LibraryInfo,
         slow: &mut Slow,
     ) -> Result<Result<Running<'a>, String>> {
-        let too_slow = format!("over {} s", self.limit.as_secs_f64());
-        let key = (self.kind, self.scene.to_owned(), self.dimensions, info.name);
+        // A world has as long for its first frames together as its check may take.
+        let (limit, too_slow) = match self.kind {
+            // For each frame, and once more for what else a check does.
+            Kind::Pairs | Kind::Intervals => (
+                (self.frames_checked() as u32 + 1) * self.limit,
+                format!("over {} s", self.limit.as_secs_f64()),
+            ),
+            Kind::Worlds | Kind::Statics => {
+                let limit = WORLD_CHECK * self.limit + CHECK_OF_BOX * self.boxes as u32;
+                (limit, format!("over {} s for the first frames", limit.as_secs_f64()))
+            }
+        };
+        let key = self.key(info);
         if let Some(&(boxes, took)) = slow.get(&key) {
             // Every library's time grows at least in proportion to the boxes.
             if took.saturating_mul((self.boxes / boxes.max(1)) as u32) > self.limit {
@@ -197,13 +217,6 @@ impl Comparison<'_> {
             self.boxes,
             self.seeds,
         )?;
-        let limit = match self.kind {
-            // For each frame, and once more for what else a check does.
-            Kind::Pairs | Kind::Intervals => (self.frames_checked() as u32 + 1) * self.limit,
-            Kind::Worlds | Kind::Statics => {
-                WORLD_CHECK * self.limit + CHECK_OF_BOX * self.boxes as u32
-            }
-        };
         match worker.ask(&Request::Check, limit)? {
             remote::Outcome::Reply(Reply::Checked {
                 fingerprint,
@@ -213,8 +226,8 @@ impl Comparison<'_> {
                 exact_ns,
             }) => {
                 let first = Duration::from_nanos(nanoseconds);
-                slow.insert(key, (self.boxes, first));
                 if matches!(self.kind, Kind::Pairs | Kind::Intervals) && first > self.limit {
+                    slow.insert(key, (self.boxes, first));
                     return Ok(Err(too_slow));
                 }
                 Ok(Ok(Running {
@@ -231,15 +244,15 @@ impl Comparison<'_> {
             }
             remote::Outcome::Late => {
                 slow.insert(key, (self.boxes, Duration::MAX));
-                Ok(Err(match self.kind {
-                    Kind::Pairs | Kind::Intervals => too_slow,
-                    Kind::Worlds | Kind::Statics => {
-                        format!("over {} s for the first frames", limit.as_secs_f64())
-                    }
-                }))
+                Ok(Err(too_slow))
             }
             other => Ok(Err(failure(other))),
         }
+    }
+
+    /// What a library's time is kept by.
+    fn key(&self, info: &LibraryInfo) -> (Kind, String, usize, &'static str) {
+        (self.kind, self.scene.to_owned(), self.dimensions, info.name)
     }
 
     /// How many frames are checked.
@@ -281,8 +294,10 @@ impl Comparison<'_> {
         }
         Ok(witnesses.iter().enumerate().find_map(|(at, one)| {
             let other = witnesses[at + 1..].iter().find(|it| {
-                // Two settings of one library may share a fault.
-                let is_another = it.info.package.is_none() || it.info.package != one.info.package;
+                // Two settings of one library may share a fault. Of this repository, those that are beside the library
+                // share no code with it.
+                let is_another = it.info.package != one.info.package
+                    || (it.info.package.is_none() && (it.info.alternative || one.info.alternative));
                 is_another && it.fingerprint == one.fingerprint
             })?;
             Some((format!("{} and {} agree", other.info.name, one.info.name), one.fingerprint?))

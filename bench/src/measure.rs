@@ -14,6 +14,7 @@ use crate::libraries::{self, LibraryInfo, ON_TWO_THREADS, THIS_CRATE, WITNESSES}
 use crate::protocol::Kind;
 use crate::record::{Case, Outcome, Record, put};
 use crate::report::time;
+use crate::worlds::TREE_FROM_SCRATCH;
 use crate::{intervals, machine, roofline, scene, worlds};
 
 /// The numbers of boxes of the small inputs.
@@ -126,8 +127,9 @@ impl Options {
         if all || self.worlds {
             let motions = self.scenes(|| Motion::ALL.map(|it| it.name().to_owned()).to_vec());
             for boxes in self.sizes(&[1_000, 10_000, 100_000, 1_000_000]) {
-                // A million shows whether the time per body stays flat.
-                let libraries: &[&str] = if boxes > 100_000 { &[THIS_CRATE] } else { &[] };
+                // A million shows whether the time per body stays flat; the tree is a second opinion on the pairs.
+                let libraries: &[&str] =
+                    if boxes > 100_000 { &[THIS_CRATE, TREE_FROM_SCRATCH] } else { &[] };
                 self.add(&mut plan, Kind::Worlds, &motions, boxes, libraries, 5)?;
             }
         }
@@ -158,10 +160,14 @@ impl Options {
                 self.add(&mut plan, Kind::Pairs, &scenes, boxes, &libraries, rounds)?;
             }
         }
+        ensure!(
+            !plan.is_empty() || self.roofline,
+            "nothing to measure: no scene or motion of these names is in what was asked for"
+        );
         Ok(plan)
     }
 
-    /// Adds a case for each scene in each number of dimensions.
+    /// Adds a case for each scene in each number of dimensions, unless an earlier part has it, with more libraries.
     fn add(
         &self,
         plan: &mut Vec<Planned>,
@@ -181,10 +187,15 @@ impl Options {
             let dimensions = if kind == Kind::Intervals { &[1][..] } else { &self.dimensions };
             for &dimensions in dimensions {
                 let exists = match kind {
-                    Kind::Pairs | Kind::Worlds => scene::exists(scene, dimensions)?,
+                    Kind::Pairs => scene::exists(scene, dimensions)?,
+                    Kind::Worlds => scene::exists(scene, dimensions)? && scene::moves(scene),
                     Kind::Statics | Kind::Intervals => true,
                 };
-                if exists {
+                let same = |it: &Planned| {
+                    (it.kind, it.dimensions, it.boxes) == (kind, dimensions, boxes)
+                        && it.scene == *scene
+                };
+                if exists && !plan.iter().any(same) {
                     let (scene, libraries) = (scene.clone(), libraries.clone());
                     plan.push(Planned { kind, scene, dimensions, boxes, libraries, rounds });
                 }

@@ -33,17 +33,22 @@ pub const ALL: &str = "all";
 
 /// Whether a scene exists in these dimensions.
 pub fn exists(name: &str, dimensions: usize) -> Result<bool> {
-    if is_file(name) || Motion::from_name(name).is_some() {
+    if is_file(name) || moves(name) {
         return Ok(true);
     }
     let scene = Scene::from_name(name).with_context(|| format!("there is no scene '{name}'"))?;
     Ok(scene.dimensions().contains(&dimensions))
 }
 
+/// Whether a name is that of a motion.
+pub fn moves(name: &str) -> bool {
+    Motion::from_name(name).is_some()
+}
+
 /// How many frames of a scene, or scenes of a kind, are checked.
 pub fn frames_checked(name: &str, n: usize) -> usize {
     let varied = n <= MOST_VARIED && !is_file(name);
-    if varied || Motion::from_name(name).is_some() { FRAMES_CHECKED } else { 1 }
+    if varied || moves(name) { FRAMES_CHECKED } else { 1 }
 }
 
 /// How many scenes of a kind, or frames of a motion, are timed in a round: each once. `None` above [`MOST_VARIED`]

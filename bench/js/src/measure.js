@@ -56,7 +56,7 @@ export class Measurement {
   }
 
   /**
-   * Takes from an earlier result how long libraries take: a library that is too slow is not asked again.
+   * Takes from a result how long libraries take: a library that is too slow is not asked again.
    *
    * @param {Case} earlier
    * @param {readonly Library[]} libraries
@@ -112,11 +112,8 @@ export class Measurement {
         }
       }
       running = running.filter((one) => one.fingerprint === reference.fingerprint);
-      running.push(...(await this.#natives(scene, setting)));
+      running.push(...(await this.#natives(scene, setting, reference.pairs)));
       await this.#rounds(running, drop);
-
-      const [fastest] = running.filter(isAlternative).sort((one, other) => one.estimate - other.estimate);
-      if (fastest) this.#fastest.set(`${scene.name} ${dimensions}`, { name: fastest.library.name, boxes, took: fastest.estimate });
 
       const base = (name) => running.find((one) => one.library.name === name)?.rounds;
       const own = (scene.task === "track" ? base(WORLD) : undefined) ?? base(FINDER) ?? [];
@@ -124,7 +121,8 @@ export class Measurement {
       results.unshift(
         ...timed.map((one) => ({ name: one.library.name, alternative: one.library.alternative, outcome: { Timed: times(one, own) } })),
       );
-      return {
+      /** @type {Case} */
+      const measured = {
         scene: scene.name,
         dimensions,
         boxes,
@@ -134,6 +132,9 @@ export class Measurement {
         load: load(),
         results,
       };
+      // From the rounds: in the few calls before them a library may have had to do what it does seldom.
+      this.learn(measured, libraries);
+      return measured;
     } finally {
       for (const one of running) one.remote.stop();
     }
@@ -184,7 +185,6 @@ export class Measurement {
       if (longest < LONG) await remote.ask("warm-up", 10_000 + limit);
       const repeats = longest < LONG ? 3 : 1;
       const estimate = median((await remote.ask(`time ${repeats} 1`, 10_000 + repeats * limit)).ms);
-      this.#slow.set(key, { boxes: Number(boxes), took: estimate });
       if (estimate > limit) throw new NoAnswer(`over ${limit / 1000} s`);
       return { library, remote, fingerprint, pairs, peak_bytes, estimate, varied, rounds: [], spent: 0 };
     } catch (error) {
@@ -200,9 +200,10 @@ export class Measurement {
    *
    * @param {import("./scenes.js").Library} scene
    * @param {string[]} setting
+   * @param {number} expected how many pairs there are
    * @returns {Promise<Running[]>}
    */
-  async #natives(scene, setting) {
+  async #natives(scene, setting, expected) {
     const { native } = this.options;
     if (!native) return [];
     const names = scene.task === "track" ? [NATIVE, NATIVE_WORLD] : [NATIVE];
@@ -210,7 +211,8 @@ export class Measurement {
       names.map(async (name) => {
         const remote = new Remote(native, name === NATIVE_WORLD ? [...setting, "world"] : setting);
         await remote.ask("", 20_000);
-        await remote.ask("check", 20_000);
+        const { pairs } = await remote.ask("check", 20_000);
+        if (pairs !== expected) throw new Error(`${name} finds ${pairs} pairs, not ${expected}: ${setting.join(" ")}`);
         const { ns } = await remote.ask("time 3 1", 20_000);
         const library = { name, alternative: false, package: "" };
         return { library, remote, fingerprint: "", pairs: 0, peak_bytes: null, estimate: median(ns) / 1e6, varied: 0, rounds: [], spent: 0 };

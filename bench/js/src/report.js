@@ -18,19 +18,24 @@ export function writeReport() {
 /** @returns {string} */
 function report(/** @type {Kept} */ kept) {
   const { machine } = kept;
-  const loads = [...kept.cases, ...kept.worlds].map((one) => one.load ?? 0);
+  const cases = [...kept.cases, ...kept.worlds];
+  const loads = cases.map((one) => one.load ?? 0);
+  const revisions = [...new Set(cases.flatMap((one) => one.revision ?? []))].sort();
   return `# The JavaScript package and its alternatives
 
 <!-- Made by bench/js/run from bench/js/results: change those, not this. -->
 
-${kept.date}, ${machine.cpu}, ${machine.cores} cores, ${kept.node}. ${loadText(loads)}
+${kept.date}, ${machine.cpu}, ${machine.cores} cores, ${kept.node}, measured at ${revisions.join(", ")}. ${loadText(loads)}
 Times are in milliseconds, from a \`Float32Array\` of boxes to stored pairs, everything included; lower is better. A
 time is the median over the rounds. A ratio is the median over the rounds of how many times as long as sweep-and-prune a
-library takes. The pairs of each library were checked first.
+library takes. The pairs of each library were checked first: those of four scenes of a kind, or of four frames, or of the
+one large scene; of native code, how many there are.
 
 ## Finding all pairs
 
 ${table(kept.cases, [FINDER])}
+
+${untimedTable(kept.cases)}
 
 ## Moving boxes
 
@@ -38,6 +43,8 @@ The time of a frame: from the moved boxes to their pairs, or to the pairs that b
 the two columns of sweep-and-prune.
 
 ${table(kept.worlds, [FINDER, WORLD])}
+
+${untimedTable(kept.worlds)}
 
 ## WebAssembly against native
 
@@ -60,7 +67,7 @@ function loadText(/** @type {number[]} */ loads) {
   const range = `load average ${least.toFixed(1)} to ${greatest.toFixed(1)}`;
   return greatest > 2.5
     ? `**Provisional: other programs were running (${range}); time spent waiting for a processor is not counted.**`
-    : `The machine was otherwise idle (${range}).`;
+    : `The machine was otherwise idle (${range}, of which measuring itself makes 1 to 2).`;
 }
 
 const order = ["uniform", "clustered", "mixed", "slab", "tower", "box-pruning", "drift", "fast", "mostly-still", "teleport"];
@@ -141,6 +148,20 @@ function nativeTable(/** @type {Kept} */ kept) {
     }),
   );
   return markdown(["scene", "boxes", "", "WebAssembly", "native", "ratio"], rows);
+}
+
+/** The libraries that were not timed, and why: a line for each reason. */
+function untimedTable(/** @type {Case[]} */ cases) {
+  const rows = [...cases].sort(byScene).flatMap((one) => {
+    /** @type {Map<string, string[]>} */
+    const names = new Map();
+    for (const { name, outcome } of one.results) {
+      if ("Untimed" in outcome) names.set(outcome.Untimed.why, [...(names.get(outcome.Untimed.why) ?? []), name]);
+    }
+    return [...names].map(([why, of]) => [`${one.scene} ${one.dimensions}D`, one.boxes.toLocaleString("en"), of.join(", "), why]);
+  });
+  if (rows.length === 0) return "Every library was timed on every scene.";
+  return `<details><summary>Not timed, and why</summary>\n\n${markdown(["scene", "boxes", "libraries", "why"], rows)}\n\n</details>`;
 }
 
 function untimed(/** @type {Case} */ one, /** @type {string} */ name) {

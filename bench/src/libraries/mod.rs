@@ -17,9 +17,9 @@ mod library;
 #[cfg(feature = "light")]
 mod obvhs;
 #[cfg(feature = "light")]
-mod packed_spatial_index;
+pub mod packed_spatial_index;
 #[cfg(feature = "light")]
-pub mod parry;
+mod parry;
 #[cfg(feature = "physx")]
 pub mod physx;
 #[cfg(feature = "light")]

@@ -22,7 +22,7 @@ mod rapier;
 use world::WorldLibrary;
 
 pub use level::NAME as LEVEL;
-pub use scratch::FROM_SCRATCH;
+pub use scratch::{FROM_SCRATCH, TREE_FROM_SCRATCH};
 pub use tracking::{FRAMES_CHECKED, Tracking, oracle};
 
 /// All worlds that were compiled in, this repository's first.
@@ -30,7 +30,7 @@ pub use tracking::{FRAMES_CHECKED, Tracking, oracle};
 pub fn all() -> Vec<WorldLibrary> {
     let mut worlds = vec![this_crate::LIBRARY, scratch::FINDER];
     #[cfg(feature = "light")]
-    worlds.extend([scratch::PARRY, rapier::LIBRARY]);
+    worlds.extend([scratch::TREE, rapier::LIBRARY]);
     #[cfg(feature = "cpp")]
     {
         worlds.extend([dynamic_tree::BOX2D, dynamic_tree::BOX3D]);

@@ -30,13 +30,16 @@ export function front(runs: readonly Run[]): { sentence: string; tables: string 
     const language = kind === "native" ? "Rust" : "JavaScript";
     return `in ${language} in ${duration(fastestOwn(one) ?? NaN)}, ${significant(other?.ratio ?? NaN)} times faster than the fastest alternative (${other?.name ?? "none"})`;
   });
-  const { machine, date } = shown[0]!.run;
+  const measured = shown.map(({ kind, run, one }) => {
+    const what = `${one.pairs.toLocaleString("en")} pairs; ${run.machine.cpu}, ${run.date}`;
+    return kind === "native" ? `Rust and C++: ${what}` : `JavaScript: ${what}`;
+  });
   const sentence = `sweep-and-prune finds all overlapping pairs among ${SHOWN.boxes.toLocaleString("en")} boxes ${parts.join(", and ")}.`;
   const tables = `
     <div class="fronts">${shown.map(({ kind, one }) => bars(one, kind === "native" ? "Rust and C++" : "JavaScript", entriesOf(kind, one), WELL_KNOWN[kind])).join("")}</div>
     <p class="quiet">
       Time of one call, from raw boxes to stored pairs, on one thread; lower is better, and the bars are logarithmic. The scene is “${SHOWN.scene}” in 2D:
-      ${SHOWN.boxes.toLocaleString("en")} random boxes, ${shown[0]!.one.pairs.toLocaleString("en")} pairs. ${machine.cpu}, ${date}.
+      ${SHOWN.boxes.toLocaleString("en")} random boxes. ${measured.join(". ")}.
       <a href="#here-heading">Measure in your own browser</a>, or see <a href="${REPOSITORY}/blob/main/bench/RESULTS.md">all libraries and scenes</a>.
     </p>`;
   return { sentence, tables };

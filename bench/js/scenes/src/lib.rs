@@ -79,7 +79,7 @@ impl<const D: usize> Boxes<D> {
     }
 
     /// How many turns have different boxes; 1 of a motion.
-    fn turns(&self) -> usize {
+    pub fn turns(&self) -> usize {
         match self {
             Self::AtRest(scenes) => scenes.turns(),
             Self::InMotion(_) => 1,
