@@ -2,7 +2,7 @@
 
     python3 scripts/check_recipe.py
 
-Uses py-rattler-build, which scripts/setup.sh installs. It does not build: that needs the packages of conda-forge.
+Uses py-rattler-build, which `./test release` installs. It does not build: that needs the packages of conda-forge.
 """
 
 from pathlib import Path

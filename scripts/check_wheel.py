@@ -2,13 +2,14 @@
 
     python3 scripts/check_wheel.py FILE...
 
-Uses auditwheel and abi3audit, which scripts/setup.sh installs.
+Uses auditwheel and abi3audit, which scripts/wheels installs.
 """
 
 import re
 import subprocess
 import sys
 import tarfile
+import tempfile
 import zipfile
 from pathlib import Path
 
@@ -33,7 +34,7 @@ def check_wheel(path: Path) -> None:
     files = {name: wheel.read(name) for name in wheel.namelist()}
     info = f"sweep_and_prune-{version}.dist-info"
     sources = {
-        str(file.relative_to(ROOT / "python/src"))
+        file.relative_to(ROOT / "python/src").as_posix()
         for file in (ROOT / "python/src").rglob("*")
         if file.suffix in {".py", ".pyi", ".typed"}
     }
@@ -54,22 +55,29 @@ def check_wheel(path: Path) -> None:
 
 
 def check_source(path: Path) -> None:
-    """A source distribution has the licenses, the lock file, the tests, and all crates that it is built from."""
-    with tarfile.open(path) as archive:
+    """A source distribution has the licenses, a lock file that fits, and all crates that it is built from, but no tests."""
+    with tarfile.open(path) as archive, tempfile.TemporaryDirectory() as folder:
+        archive.extractall(folder, filter="data")
+        manifest = Path(folder, path.name.removesuffix(".tar.gz"), "python/Cargo.toml")
+        run("cargo", "metadata", "--locked", "--format-version", "1", "--manifest-path", manifest)
         names = {member.name.split("/", 1)[1]: member for member in archive if member.isfile()}
         files = {name: archive.extractfile(member).read() for name, member in names.items()}
     check_licenses(path, files, "")
     wanted = ["pyproject.toml", "python/Cargo.lock", "python/extension/lib.rs", "core/src/lib.rs", "bindings/src/lib.rs"]
-    lacks = [name for name in [*wanted, "src/sweep_and_prune/py.typed", "python/tests/conftest.py"] if name not in files]
+    lacks = [name for name in [*wanted, "src/sweep_and_prune/py.typed"] if name not in files]
     check(path, not lacks, f"lacks {lacks}")
+    # They need scenes, documents and programs of the repository.
+    tests = [name for name in files if name.startswith("python/tests/")]
+    check(path, not tests, f"also has {tests}")
     minimum = re.search(r'^rust-version = "(.*)"', (ROOT / "python/Cargo.toml").read_text(), re.MULTILINE)
     check(path, minimum and f"Rust {minimum[1]} or later" in files["PKG-INFO"].decode(), "does not name its Rust version")
 
 
 def check_licenses(path: Path, files: "dict[str, bytes]", folder: str) -> None:
-    """The license texts are those of the repository."""
+    """The license texts are those of the repository, and of the crates that are linked."""
     for name in ("LICENSE-MIT", "LICENSE-APACHE"):
         check(path, files.get(folder + name) == (ROOT / name).read_bytes(), f"lacks the text of {name}")
+    check(path, b"\nnumpy " in files.get(folder + "LICENSE-DEPENDENCIES", b""), "lacks the license texts of crates")
 
 
 def check(path: Path, holds: object, message: str) -> None:

@@ -1,20 +1,24 @@
 // What the builds of the npm packages share: compiled cores, modules, declarations, budgets.
 import { spawn } from "node:child_process";
-import { copyFileSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { homedir } from "node:os";
-import { basename, dirname, join, relative } from "node:path";
+import { basename, dirname, join, relative, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { deflateRawSync, gzipSync } from "node:zlib";
 import { build } from "esbuild";
 import { rolldown } from "rolldown";
 import { dts } from "rolldown-plugin-dts";
 import wabt from "wabt";
+import { joined, textsOfCrates, textsOfModules } from "./licenses.mjs";
 
 export const root = dirname(dirname(fileURLToPath(import.meta.url)));
 const registry = join(process.env.CARGO_HOME ?? join(homedir(), ".cargo"), "registry");
-const target = process.env.CARGO_TARGET_DIR ?? join(root, "target");
+const target = resolve(root, process.env.CARGO_TARGET_DIR ?? "target");
 const tools = await wabt();
+/** What the package that is built contains: names of crates, and paths of modules. */
+const crates = new Set();
+const modules = new Set();
 
 /** A flag for the compiler: indices of functions as short as they can be, the same code, 4 % smaller, and 1 to 2 % after gzip. */
 export const SHORT_INDICES = "-Clink-arg=--compress-relocations";
@@ -25,7 +29,12 @@ export function begin(folder) {
   const started = Date.now();
   mkdirSync(dist, { recursive: true });
   return () => {
-    for (const licence of ["LICENSE-MIT", "LICENSE-APACHE"]) copyFileSync(join(root, licence), join(dist, licence));
+    // Written, since on Windows a copy has the time of its source, and would be removed as left from an earlier build.
+    for (const licence of ["LICENSE-MIT", "LICENSE-APACHE"]) writeFileSync(join(dist, licence), readFileSync(join(root, licence)));
+    const wasm = ["--all-features", "--target=wasm32-unknown-unknown"];
+    const ofCrates = [...crates].flatMap((crate) => textsOfCrates(join(root, "Cargo.toml"), `--package=${crate}`, ...wasm));
+    const texts = [...ofCrates, ...textsOfModules([...modules])];
+    if (texts.length > 0) writeFileSync(join(dist, "LICENSE-DEPENDENCIES"), joined(texts));
     // Of a folder whose files are written over, the time does not change.
     for (const name of readdirSync(dist, { recursive: true })) {
       const path = join(dist, name);
@@ -41,6 +50,7 @@ export function begin(folder) {
  * one that uses it, which are above all the finder's innermost loops.
  */
 export async function compile(crate, { features = [], directory, flags = [], levels }) {
+  crates.add(crate);
   const what = ["--package", crate, "--no-default-features", "--features", features.join()];
   const profile = ["--profile", "wasm", "--target", "wasm32-unknown-unknown"];
   // Paths of this machine do not belong in the package.
@@ -94,6 +104,7 @@ export async function buildModules(folder, entries, { plugins = [], hasShortName
     plugins: [inlined(folder), ...plugins],
     metafile: true,
   });
+  for (const path of Object.keys(metafile.inputs)) modules.add(`${folder}/${path}`);
   for (const path of Object.keys(metafile.outputs).filter((path) => path.endsWith(".map"))) leaveOutCores(join(folder, path));
   for (const { name, budget = Infinity } of entries) {
     const glue = [...withImports(metafile.outputs, `dist/${name}.js`)];

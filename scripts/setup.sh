@@ -82,10 +82,19 @@ setup_rust() {
       fail "Rust is missing and rustup could not be installed: please install it from https://rustup.rs and start again."
     rm -f "$installer"
   fi
+  # Rustup's own cargo, which reads rust-toolchain.toml, comes before one of the system.
+  local folder libraries
+  folder=$(dirname "$(command -v rustup)")
+  [ "$(dirname "$(command -v cargo)")" = "$folder" ] || export PATH="$folder:$PATH"
   # rust-toolchain.toml names the toolchain, its components and its wasm32 target.
-  local libraries
   libraries=$(RUSTUP_AUTO_INSTALL=0 rustc --print target-libdir --target wasm32-unknown-unknown 2>/dev/null) || true
   { [ -d "$libraries" ] && has_toolchain; } || install_toolchain rust-toolchain.toml
+}
+
+# target_directory [MANIFEST]: where cargo puts what it builds, which its settings may say.
+target_directory() {
+  cargo metadata --format-version 1 --no-deps --manifest-path "${1:-Cargo.toml}" |
+    sed -n 's/.*"target_directory":"\([^"]*\)".*/\1/p'
 }
 
 # Whether the toolchain of this folder is there.
@@ -190,10 +199,16 @@ setup_python() {
   export VIRTUAL_ENV=$root/.tools/python PATH="$root/.tools/python/bin:$PATH"
 }
 
-# What builds and checks the packages of a release: the programs of scripts/requirements.txt.
+# What builds and checks the Python package of a release: the programs of scripts/requirements.txt.
 setup_release() {
   python_environment release "$root/scripts/requirements.txt"
   export PATH="$PATH:$root/.tools/release/bin:$root/.tools/release/Scripts"
+}
+
+# What checks the workflows and the conda recipe. Not every system on which wheels are built has it.
+setup_checks() {
+  python_environment checks "$root/tests/requirements.txt"
+  export PATH="$PATH:$root/.tools/checks/bin"
 }
 
 # python_environment NAME REQUIREMENTS: an environment in .tools/NAME with what the file names.
@@ -219,19 +234,22 @@ python_environment() {
 
 # Checks the workflows of GitHub Actions. Written in Go, and not published as a package elsewhere.
 setup_actionlint() {
+  local version=1.7.12 installed
   export PATH="$root/.tools/bin:$PATH"
-  have actionlint && return
+  installed=$(actionlint -version 2>/dev/null) || true
+  [[ $installed != *"$version"* ]] || return 0
   have go || install_packages go "golang-go|golang|go|go|go"
   say "Installing actionlint into .tools/bin ..."
-  GOBIN=$root/.tools/bin quietly go install github.com/rhysd/actionlint/cmd/actionlint@v1.7.12 ||
+  GOBIN=$root/.tools/bin quietly go install "github.com/rhysd/actionlint/cmd/actionlint@v$version" ||
     fail "actionlint could not be installed: is the network reachable, and is 'go' 1.25 or later?"
 }
 
 # Checks licenses, sources and known vulnerabilities of the crates that we depend on.
 setup_cargo_deny() {
+  local version=0.20.2
   export PATH="$root/.tools/bin:$PATH"
-  have cargo-deny && return
+  [ "$(cargo-deny --version 2>/dev/null)" != "cargo-deny $version" ] || return 0
   say "Installing cargo-deny into .tools/bin ..."
-  quietly cargo install --quiet --locked --root "$root/.tools" --version 0.20.2 cargo-deny ||
+  quietly cargo install --quiet --locked --root "$root/.tools" --version "$version" cargo-deny ||
     fail "cargo-deny could not be installed: is the network reachable?"
 }

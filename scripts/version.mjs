@@ -25,6 +25,7 @@ export const VERSIONS = [
   ["python/conda/recipe.yaml", /^( *version: ")(.*?)(")/m],
   ["c/Cargo.toml", /^(version = ")(.*?)(")/m],
   ["js/package.json", /^( *"version": ")(.*?)(")/m],
+  ["js/README.md", /(npm\/sweep-and-prune@)(.*?)(\/)/],
   ["classroom/demo/package.json", /^( *"version": ")(.*?)(")/m],
   ["gpu/js/package.json", /^( *"version": ")(.*?)(")/m],
   ["site/package.json", /^( *"version": ")(.*?)(")/m],
@@ -32,6 +33,12 @@ export const VERSIONS = [
   ["site/package.json", /^( *"sweep-and-prune-classroom": ")(.*?)(")/m],
   ["site/package.json", /^( *"sweep-and-prune-gpu": ")(.*?)(")/m],
   ["CHANGELOG.md", /^(## (?:Unreleased \()?)(\d[^ )\n]*)(\)?.*)$/m],
+];
+
+/** Where its first two numbers stand: versions that agree in them are compatible. */
+export const SHORT_VERSIONS = [
+  ["c/README.md", /(find_package\(SweepAndPrune )(.*?)( )/],
+  ["integrations/bevy/README.md", /^(bevy_sweep_and_prune = ")(.*?)(")/m],
 ];
 
 /** Where the minimum Rust version stands. */
@@ -47,6 +54,12 @@ export const RUST_VERSIONS = [
   ["python/README.md", /(Rust )([\d.]+)( or later)/],
 ];
 
+/** The lock files of cargo. */
+export const LOCKS = execFileSync("git", ["ls-files", "*Cargo.lock"], { cwd: root, encoding: "utf8" }).trim().split("\n");
+
+/** The first two numbers of a version. */
+export const short = (version) => version.replace(/\.\d+$/, "");
+
 /** The value of each place, by a name of the place. */
 export const valuesOf = (places) =>
   new Map(places.map(([file, pattern]) => [`${file} ${pattern.source}`, read(file).match(pattern)?.[2]]));
@@ -55,7 +68,11 @@ export const valuesOf = (places) =>
 export function version() {
   const values = valuesOf(VERSIONS);
   const [first] = values.values();
-  for (const [place, value] of values) if (value !== first) throw new Error(`${place} has ${value}, not ${first}`);
+  const check = (places, wanted) => {
+    for (const [place, value] of places) if (value !== wanted) throw new Error(`${place} has ${value}, not ${wanted}`);
+  };
+  check(values, first);
+  check(valuesOf(SHORT_VERSIONS), short(first));
   return first;
 }
 
@@ -67,16 +84,19 @@ export function notes(changelog, released) {
   return section.slice(section.indexOf("\n")).trim();
 }
 
+/** The changelog with a section for the next version: a released section, whose heading has a date, keeps its heading. */
+export const withSection = (changelog, next) =>
+  changelog.replace(/^## .*/m, (heading) => `## Unreleased (${next})${heading.includes("Unreleased") ? "" : `\n\n${heading}`}`);
+
 function write(next) {
   if (!/^\d+\.\d+\.\d+$/.test(next)) throw new Error(`${next} is not of the form 1.2.3`);
-  for (const [file, pattern] of VERSIONS) {
-    writeFileSync(join(root, file), read(file).replace(pattern, `$1${next}$3`));
-  }
+  const change = (file, changed) => writeFileSync(join(root, file), changed(read(file)));
+  change("CHANGELOG.md", (changelog) => withSection(changelog, next));
+  for (const [file, pattern] of VERSIONS) change(file, (text) => text.replace(pattern, `$1${next}$3`));
+  for (const [file, pattern] of SHORT_VERSIONS) change(file, (text) => text.replace(pattern, `$1${short(next)}$3`));
   const run = (...command) => execFileSync(command[0], command.slice(1), { cwd: root, stdio: "inherit" });
   run("npm", "install", "--package-lock-only", "--ignore-scripts", "--no-audit", "--no-fund");
-  for (const workspace of ["Cargo.toml", "python/Cargo.toml", "c/Cargo.toml", "bench/Cargo.toml", "gpu/Cargo.toml", "integrations/bevy/Cargo.toml"]) {
-    run("cargo", "update", "--quiet", "--workspace", "--manifest-path", workspace);
-  }
+  for (const lock of LOCKS) run("cargo", "update", "--quiet", "--workspace", "--manifest-path", lock.replace(/lock$/, "toml"));
 }
 
 if (process.argv[1] === fileURLToPath(import.meta.url)) {

@@ -64,6 +64,7 @@ describe("JavaScript: the packed packages", { skip }, () => {
     // They are built already: `npm pack` would build them again.
     const pack = (folder) => run(join(root, folder), "npm", "pack", "--ignore-scripts", "--silent", "--pack-destination", path).trim();
     run(path, "npm", "install", "--silent", "--no-audit", "--no-fund", ...["js", "classroom/demo"].map((folder) => `./${pack(folder)}`));
+    assert.match(readFileSync(join(path, "node_modules/sweep-and-prune-classroom/dist/LICENSE-DEPENDENCIES"), "utf8"), /BSD 3-Clause/);
     const codes = ["README.md", "js/README.md", "classroom/demo/README.md"].flatMap((readme) => examples(readme, "js"));
     assert.ok(codes.length >= 6, `${codes.length} examples`);
     for (const [at, code] of codes.entries()) {

@@ -7,7 +7,7 @@ import { basename, dirname, join } from "node:path";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 
-import { RUST_VERSIONS, VERSIONS, notes, valuesOf } from "../scripts/version.mjs";
+import { LOCKS, RUST_VERSIONS, SHORT_VERSIONS, VERSIONS, notes, short, valuesOf, withSection } from "../scripts/version.mjs";
 
 const root = dirname(dirname(fileURLToPath(import.meta.url)));
 const read = (path) => readFileSync(join(root, path), "utf8");
@@ -23,14 +23,18 @@ for (const [what, places] of [["version", VERSIONS], ["minimum Rust version", RU
   });
 }
 
+test("the places with two numbers have those of the version", () => {
+  const [version] = valuesOf(VERSIONS).values();
+  for (const [place, value] of valuesOf(SHORT_VERSIONS)) assert.equal(value, short(version), place);
+});
+
 test("the lock files have that version, too", () => {
   const [version] = valuesOf(VERSIONS).values();
   const { packages } = JSON.parse(read("package-lock.json"));
   for (const workspace of ["js", "classroom/demo", "gpu/js", "site"]) assert.equal(packages[workspace].version, version, workspace);
-  for (const lock of ["Cargo.lock", "python/Cargo.lock", "bench/Cargo.lock", "c/Cargo.lock", "gpu/Cargo.lock", "integrations/bevy/Cargo.lock"]) {
-    const [, locked] = read(lock).match(/^name = "sweep-and-prune"\nversion = "(.*)"/m) ?? [];
-    assert.equal(locked, version, lock);
-  }
+  const locked = LOCKS.map((lock) => [lock, read(lock).match(/^name = "sweep-and-prune"\nversion = "(.*)"/m)?.[1]]);
+  assert.ok(locked.filter(([, found]) => found !== undefined).length >= 7, `${locked}`);
+  for (const [lock, found = version] of locked) assert.equal(found, version, lock);
 });
 
 test("release notes are the section of the changelog", () => {
@@ -39,6 +43,12 @@ test("release notes are the section of the changelog", () => {
   assert.equal(notes(changelog, "0.1.0"), "- That.");
   assert.throws(() => notes(changelog, "0.2"), /no heading/);
   assert.throws(() => notes("## Unreleased (0.2.0)\n", "0.2.0"), /no heading/);
+});
+
+test("the next version has a section of its own above what is released", () => {
+  assert.equal(withSection("# Changelog\n\n## Unreleased (0.2.0)\n\n- This.\n", "0.3.0"), "# Changelog\n\n## Unreleased (0.3.0)\n\n- This.\n");
+  const released = "## 0.2.0 (2026-12-01)\n\n- This.\n\n## 0.1.0 (2026-11-23)\n";
+  assert.equal(withSection(`# Changelog\n\n${released}`, "0.2.1"), `# Changelog\n\n## Unreleased (0.2.1)\n\n${released}`);
 });
 
 test("each package has the license texts of the repository", () => {
@@ -87,6 +97,13 @@ for (const [name, text] of workflows) {
     }
   });
 }
+
+test("only a pushed tag is published", () => {
+  const jobs = read(".github/workflows/release.yml").split(/^ {2}(?=[\w-]+:$)/m);
+  const publishing = jobs.filter((job) => /^ {4}environment: release$/m.test(job));
+  assert.equal(publishing.length, 3);
+  for (const job of publishing) assert.match(job, /^ {4}if: github\.event_name == 'push'$/m);
+});
 
 test("one action has one version", () => {
   const versions = new Map();

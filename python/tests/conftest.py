@@ -15,7 +15,7 @@ ROOT = Path(__file__).parents[2]
 
 def write_scenes(folder: Path, *count: str) -> Path:
     """Writes the boxes of all scenes to a folder: 150 of each, or `count`."""
-    manifest = str(ROOT / "python/Cargo.toml")
+    manifest = str(ROOT / "Cargo.toml")
     package = ["--manifest-path", manifest, "--package", "sweep-and-prune-golden-boxes", "--profile", "checked"]
     subprocess.run(["cargo", "run", "--quiet", *package, "--", str(folder), *count], check=True)
     return folder

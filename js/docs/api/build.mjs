@@ -1,13 +1,16 @@
-// Writes the API reference, static HTML, to js/dist-docs/, or what the options given to this say. Installs TypeDoc first if it is not here.
+// Writes the API reference, static HTML, to js/dist-docs/, or what the options given to this say. Installs TypeDoc first
+// if it is not here as package-lock.json names it.
 // Fails if something exported has no documentation, or a link leads nowhere.
 import { spawnSync } from "node:child_process";
-import { existsSync } from "node:fs";
+import { statSync } from "node:fs";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";
 
 const here = fileURLToPath(new URL(".", import.meta.url));
 const typedoc = join(here, "node_modules/typedoc/bin/typedoc");
-if (!existsSync(typedoc)) run("npm", "ci", "--no-audit", "--no-fund", "--loglevel=error");
+// As scripts/setup.sh knows what is installed.
+const time = (/** @type {string} */ path) => statSync(join(here, path), { throwIfNoEntry: false })?.mtimeMs ?? 0;
+if (time("node_modules/.package-lock.json") < time("package-lock.json")) run("npm", "ci", "--no-audit", "--no-fund", "--loglevel=error");
 run(process.execPath, typedoc, "--logLevel", "Warn", ...process.argv.slice(2));
 
 /** @param {string} command @param {string[]} options */
