@@ -155,6 +155,9 @@ impl Error {
     pub const BOX_LIMIT: usize = u32::MAX as usize;
 }
 
+/// The arguments of queries that may be infinite.
+const LENGTHS: [&str; 3] = ["radius", "max_distance", "limit"];
+
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -190,7 +193,9 @@ impl fmt::Display for Error {
             Error::InvalidQuery { index, argument, value } => {
                 let limit = match value.get() {
                     number if number.is_nan() => "may not be NaN",
-                    number if number.is_infinite() => "must be finite",
+                    number if number.is_infinite() && !LENGTHS.contains(argument) => {
+                        "must be finite"
+                    }
                     _ if *argument == "from" => "must be a box with min <= max",
                     _ => "must be 0 or more",
                 };

@@ -25,7 +25,7 @@ use crate::geometry::check_count;
 use crate::{Aabb, Error, Scalar, validate};
 
 /// Whether updates, too, leave out of many boxes what lies near none of a few. Not in WebAssembly: that takes 2 KB after gzip,
-/// which the smallest files do not have left. (In what order pairs are found cannot be seen in updates.)
+/// which the smallest files do not have left. (Of updates only `pairs_unsorted` shows in what order pairs are found.)
 const LEAVES_OUT_IN_UPDATES: bool = cfg!(not(target_arch = "wasm32"));
 
 /// What a finder keeps between searches.

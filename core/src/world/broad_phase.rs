@@ -29,7 +29,8 @@ use crate::{Aabb, Error, Scalar};
 /// To go back to an earlier frame, keep clones: `saved.clone_from(&world)` and `world.clone_from(&saved)` copy into memory
 /// that is there. A new [`clone`](Clone::clone) allocates, and a [`snapshot`](Self::snapshot) takes longer to restore.
 ///
-/// The same calls give the same results, bit for bit, on every platform. A call that returns an error
+/// The same calls give the same results, bit for bit, on every platform
+/// (but for the order of [`pairs_unsorted`](Self::pairs_unsorted) in WebAssembly). A call that returns an error
 /// changes nothing. Where memory runs out the program ends, as it does when a collection cannot grow; an update that finds
 /// more pairs than fit into memory is survived by [`try_update`](Self::try_update).
 ///
@@ -256,7 +257,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     }
 
     /// The pairs of [`pairs`](Self::pairs) in an order that is the same for the same calls, but not
-    /// specified: a restored world may give another. Takes O(pairs) time and does not allocate.
+    /// specified: a restored world may give another, and so does WebAssembly. Takes O(pairs) time and does not allocate.
     pub fn pairs_unsorted(&self) -> impl Iterator<Item = [ProxyId; 2]> + '_ {
         self.tracking.candidates.ids(&self.bodies.slots)
     }
@@ -387,7 +388,8 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// The whole state as bytes. A world [restored](Self::from_snapshot) from them gives, for the
     /// same calls, the same ids, events and results, bit for bit.
     ///
-    /// Takes O(n) time; about `2 * D * size_of::<T>() + 2` bytes for each body at rest. To go back a few frames, as
+    /// Takes O(n) time; about `2 * D * size_of::<T>() + 2` bytes for each body at rest, and nearly twice as many with
+    /// [`Report::Fat`], which adds its fat AABB. To go back a few frames, as
     /// rollback does, a clone is faster: see [`BroadPhase`]. Snapshots are for files and for other machines.
     ///
     /// ```

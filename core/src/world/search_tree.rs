@@ -77,7 +77,7 @@ impl<const D: usize, T: Scalar> SearchTree<D, T> {
 
     /// Notes that it will be searched about so often.
     pub fn note_uses(&mut self, count: usize) {
-        self.uses += count;
+        self.uses = self.uses.saturating_add(count);
     }
 
     /// Brings it closer to holding the fat AABBs of all bodies that are not new and do not fly, by about as much work as finding

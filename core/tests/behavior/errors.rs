@@ -60,6 +60,10 @@ fn a_message_about_a_query_names_the_argument_at_fault() {
         "`radius` of query 1 is -2, but it must be 0 or more"
     );
     assert_eq!(
+        at(queries.within([0.0], -infinity).map(|_| ())),
+        "`radius` of query 0 is -inf, but it must be 0 or more"
+    );
+    assert_eq!(
         at(queries.within([infinity], 1.0).map(|_| ())),
         "`center` of query 0 is inf, but it must be finite"
     );

@@ -21,13 +21,15 @@ pub struct Exclusions {
     table: Vec<Entry>,
     /// How many entries are taken, also by pairs that are excluded no more.
     taken: usize,
+    /// How many of these are not: they are excluded, were so at the last update, or are listed.
+    kept: usize,
     /// The pairs of which it changed since the last update whether they are excluded now, each once.
     edited: Vec<[u32; 2]>,
 }
 
 clone_fields! {
     [] Exclusions {
-        table, taken, edited,
+        table, taken, kept, edited,
     }
 }
 
@@ -59,17 +61,24 @@ impl Exclusions {
         let at = self.position(pair);
         let entry = &mut self.table[at];
         self.taken += usize::from(entry.pair == NOTHING);
+        self.kept += usize::from(entry.when == 0);
         if entry.when & LISTED == 0 {
             self.edited.push(pair);
         }
         *entry = Entry { pair, when: (entry.when ^ when) | LISTED };
     }
 
-    /// Makes what is excluded now what was at the last update.
+    /// Makes what is excluded now what was at the last update. Where nothing is, the table is empty again, and a clone smaller.
     pub fn finish(&mut self) {
         while let Some(pair) = self.edited.pop() {
             let at = self.position(pair);
-            self.table[at].when = (self.table[at].when & NOW) * (NOW | BEFORE);
+            let when = &mut self.table[at].when;
+            *when = (*when & NOW) * (NOW | BEFORE);
+            self.kept -= usize::from(*when == 0);
+        }
+        if self.kept == 0 {
+            self.table.clear();
+            self.taken = 0;
         }
     }
 
@@ -79,6 +88,7 @@ impl Exclusions {
         for Entry { pair, when } in &mut self.table {
             if *when & (NOW | BEFORE) != 0 && !pair.iter().all(|&slot| is_kept(slot)) {
                 *when &= LISTED;
+                self.kept -= usize::from(*when == 0);
             }
         }
     }
@@ -162,7 +172,12 @@ mod tests {
                 assert_eq!(keys, expected);
                 assert!(exclusions.taken * 2 <= exclusions.table.len());
                 assert!(exclusions.edited.len() <= exclusions.taken, "each once");
+                let kept = exclusions.table.iter().filter(|entry| entry.when != 0).count();
+                assert_eq!(exclusions.kept, kept);
             }
         }
+        (0..1000).for_each(|slot| exclusions.retain(&|other| other != slot));
+        exclusions.finish();
+        assert!(exclusions.is_empty() && exclusions.table.is_empty(), "none is left");
     }
 }

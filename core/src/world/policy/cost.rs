@@ -58,7 +58,7 @@ pub const TRIES_SAMPLES: bool = cfg!(not(target_arch = "wasm32"));
 /// Whether to keep a tree whose leaves became larger by this factor, and which is searched this often
 /// between two builds.
 pub fn refit_pays(growth: f64, searches: usize, bodies: usize) -> bool {
-    (growth - 1.0) * (searches * LARGE_LEAVES) as f64 <= bodies as f64
+    (growth - 1.0) * searches as f64 * LARGE_LEAVES as f64 <= bodies as f64
 }
 
 /// What tracking cost since all fat AABBs were made, and whether to skip it.

@@ -41,10 +41,11 @@ impl Sleep {
         self.idle += usize::from(moved * 2 < awake);
         // Then sleeping bodies and their pairs are scanned too.
         let patience = self.patience.max(PATIENCE[0]);
-        let is_time = self.idle >= patience && self.idle * awake * 4 >= kept;
+        let is_time =
+            self.idle >= patience && self.idle.saturating_mul(awake).saturating_mul(4) >= kept;
         if is_time {
-            let saved = self.count * self.idle;
-            let is_worth = self.woke * WAKE <= saved;
+            let saved = self.count.saturating_mul(self.idle);
+            let is_worth = self.woke.saturating_mul(WAKE) <= saved;
             self.patience = if is_worth { patience / 2 } else { (2 * patience).min(PATIENCE[1]) };
             (self.woke, self.idle) = (0, 0);
         }
@@ -59,5 +60,16 @@ impl Sleep {
             self.moves = 0;
         }
         is_scattered
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_world_that_rests_for_ever_counts_without_overflow() {
+        let mut sleep = Sleep { count: usize::MAX, woke: usize::MAX, ..Sleep::default() };
+        assert!((0..100).any(|_| sleep.note(usize::MAX / 2, 1, 0)));
     }
 }

@@ -30,8 +30,8 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     /// The `k` bodies nearest to a point that are at most `max_distance` away, or all of those if there are
     /// fewer; sorted by distance and then by id. Only the parts of the world that are near enough are searched.
     ///
-    /// Distances are compared as squares in `f64`: they overflow beyond 1e154, which coordinates of type `f32`
-    /// cannot reach.
+    /// Distances are compared as squares in `f64`: they overflow beyond 1e154 and vanish below 1e-162, which coordinates of
+    /// type `f32` cannot reach.
     ///
     /// ```
     /// use sweep_and_prune::{Aabb, BroadPhase};

@@ -10,9 +10,10 @@ use crate::{Aabb, Scalar};
 
 /// Writes the snapshot of a world to bytes, of which there are none.
 pub fn write<const D: usize, T: Scalar>(bodies: &Bodies<D, T>, bytes: &mut Vec<u8>) {
-    bytes.reserve_exact(64 + bodies.slots.len() * (2 * D * T::BYTES + 2));
-    bytes.extend(MAGIC);
     let report = bodies.options.report;
+    let boxes = 1 + usize::from(report.is_fat());
+    bytes.reserve_exact(64 + bodies.slots.len() * (boxes * 2 * D * T::BYTES + 2));
+    bytes.extend(MAGIC);
     let excluded = bodies.rules.excluded(&bodies.slots);
     let held = bit(report.is_fat(), world::FAT) | bit(!excluded.is_empty(), world::EXCLUSIONS);
     bytes.extend([VERSION, D as u8, T::BYTES as u8, held]);

@@ -148,3 +148,8 @@ fn fat_aabbs_are_on_trial_until_they_last() {
     policy.note_incremental(1, 0);
     assert!(!policy.is_trial());
 }
+
+#[test]
+fn searches_for_ever_are_counted_without_overflow() {
+    assert!(!refit_pays(2.0, usize::MAX, BODIES));
+}
