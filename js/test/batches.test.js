@@ -121,7 +121,7 @@ test("errors name the argument, the query and the value", () => {
   assert.throws(() => world.rayCastMany([0, 0], [1, 0], 1, {}, /** @type {any} */ ({ sorted: false })), /^TypeError: `options` has no `sorted`/);
 });
 
-test("lists are copies, or with the option `views` views until the next call", () => {
+test("lists are copies, or with the option `views` their ids are views until the next call", () => {
   const world = new BroadPhase({ dimensions: 2 });
   world.insertMany(boxesAmong(random(1), 100, 2, among));
   const found = world.overlappingMany(boxesAmong(random(2), 50, 2, among));
@@ -133,7 +133,10 @@ test("lists are copies, or with the option `views` views until the next call", (
   const viewed = new BroadPhase({ dimensions: 2, views: true });
   viewed.insert(0, 0, 1, 1);
   const [first, second] = [viewed.overlappingMany([0, 0, 1, 1]), viewed.overlappingMany([0, 0, 1, 1])];
-  assert.equal(first.ids.buffer, second.ends.buffer);
+  assert.equal(first.ids.buffer, second.ids.buffer);
+  assert.deepEqual([...first.ends], [1]);
+  viewed.overlappingMany([5, 5, 6, 6]);
+  assert.deepEqual([...first.ends], [1], "where the lists end is a copy");
 });
 
 test("a box of many that is inverted or too large is named by its query", () => {

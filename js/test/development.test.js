@@ -36,4 +36,25 @@ test("so do the views of a world", () => {
   assert.equal(ids.length, 2);
   world.remove(a);
   assert.throws(() => ids.length, /stale/);
+  const left = world.ids();
+  world.free();
+  assert.throws(() => left.length, /stale/);
+});
+
+test("so do arrays to write to, and what they overwrite", () => {
+  const world = new BroadPhase({ dimensions: 2, views: true });
+  const ids = world.insertMany([0, 0, 1, 1, 0, 0, 2, 2]).slice();
+  const { begun } = world.update();
+  const into = world.buffers(2);
+  assert.throws(() => begun.length, /stale/, "the memory may have grown");
+  into.ids.set(ids);
+  into.boxes.set([0, 0, 1, 1, 7, 7, 9, 9]);
+  into.boxes[4] = 8;
+  world.setMany(into.ids, into.boxes);
+  assert.deepEqual(world.box(Number(ids[1])), [8, 7, 9, 9]);
+  assert.throws(() => (into.boxes[0] = 1), /stale/);
+  const old = world.buffers(2);
+  world.insertMany([5, 5, 6, 6, 6, 6, 7, 7]);
+  assert.throws(() => world.setMany(old.ids, old.boxes), /stale/);
+  world.free();
 });

@@ -114,6 +114,17 @@ test("objects without a box: bodies that are gone, those that the user disabled,
     pixi.moveObjects(world);
     assert.equal(world.isEnabled(coin), visible);
   }
+
+  const shot = { ...sprite(1), destroyed: false };
+  const bullet = Number(pixi.insertObjects(world, [shot])[0]);
+  Object.assign(shot, {
+    destroyed: true,
+    getBounds() {
+      throw new TypeError("as Pixi's own does");
+    },
+  });
+  pixi.moveObjects(world);
+  assert.equal(world.isEnabled(bullet), false);
 });
 
 test("a box with a NaN is refused, and then nothing has changed", () => {

@@ -20,7 +20,12 @@ const forms = {
   "box-intersect": (row) => row,
   "a typed array": (row) => Float64Array.from(row),
   sides: (row, d) => ({ left: row[0], right: row[d], ...(d === 2 && { top: row[1], bottom: row[3] }) }),
-  "sides, flipped": (row, d) => ({ left: row[d], right: row[0], ...(d === 2 && { top: row[3], bottom: row[1] }) }),
+  // From Infinity to -Infinity are bounds of nothing.
+  "sides, flipped": (row, d) => {
+    const sides = (/** @type {number | undefined} */ low, /** @type {number | undefined} */ high) => (low === -Infinity && high === Infinity ? [low, high] : [high, low]);
+    const [[left, right], [top, bottom]] = [sides(row[0], row[d]), sides(row[1], row[3])];
+    return { left, right, ...(d === 2 && { top, bottom }) };
+  },
   // Sums of these coordinates are exact, apart from infinite ones.
   ...Object.fromEntries([["width", "height", "depth"], ["w", "h", "d"]].flatMap((names) => [false, true].map((isFlipped) => [names.join(isFlipped ? ", flipped, " : ", "), sized(names, isFlipped)]))),
   DOMRect: (row, d) => ({

@@ -64,6 +64,26 @@ test("boxes of many bodies, in the precision of the world", () => {
   }
 });
 
+test("a body that is removed again after a restore still has its data when the end of its pairs is reported", () => {
+  for (const updates of [true, false]) {
+    /** @type {BroadPhase<1, string>} */
+    const world = new BroadPhase({ dimensions: 1 });
+    world.insert([0, 1], { data: "hero" });
+    const bullet = world.insert([0, 1], { data: "bullet" });
+    world.update();
+    const bytes = world.snapshot();
+    for (let round = 0; round < 3; round++) {
+      if (round > 0) world.restore(bytes);
+      if (!updates) world.update();
+      world.remove(bullet);
+      assert.deepEqual(world.dataPairs(world.update().ended), [["hero", "bullet"]]);
+      if (updates) assert.equal(world.data(bullet), "bullet");
+    }
+    world.update();
+    assert.equal(world.data(bullet), undefined);
+  }
+});
+
 test("data goes with a clone, and stays over a restore for the bodies that are here", () => {
   /** @type {BroadPhase<1, string>} */
   const world = new BroadPhase({ dimensions: 1 });

@@ -32,6 +32,7 @@ const searches = [
   ["an edge that is undefined", () => any.findPairs([{ minX: undefined }]), /^TypeError: minX of boxes\[0\] must be a number, not undefined/],
   ["a sprite of Phaser", () => any.findPairs([{ x: 0, y: 0, width: 2, height: 2, originX: 0.5, originY: 0.5 }]), /^TypeError: boxes\[0\] does not begin at its position: pass its `getBounds\(\)`/],
   ["a sprite of Pixi", () => any.findPairs([{ x: 0, y: 0, width: 2, height: 2, anchor: { x: 0, y: 1 } }]), /^TypeError: boxes\[0\] does not begin at its position/],
+  ["a container of Pixi", () => any.findPairs([{ x: 0, y: 0, width: 2, height: 2, rotation: 0, getBounds() {} }]), /^TypeError: boxes\[0\] does not begin at its position/],
   ["a later sprite", () => any.findPairs([box, Object.assign(new Sprite(), { x: 0, y: 0, width: 2, height: 2, originX: 0.5, originY: 0.5 })]), /^TypeError: boxes\[1\] does not begin at its position/],
   ["a sprite as a body", () => any.world().insert({ x: 0, y: 0, width: 2, height: 2, originX: 0, originY: 0.5 }), /^TypeError: `box` does not begin at its position/],
   ["sprites as bodies", () => any.world().insertMany([{ x: 0, y: 0, width: 2, height: 2, originX: 1, originY: 0 }]), /^TypeError: boxes\[0\] does not begin at its position/],
@@ -187,6 +188,10 @@ test("a rectangle that was drawn to the upper left, or has its sides flipped, is
     assert.deepEqual(world.box(world.insert(one)), [0, 0, 5, 6]);
     assert.deepEqual(findPairs([one, [0, 0, 0, 0]]).length, 1);
   }
+  // Not bounds that nothing has widened.
+  const nothing = { left: Infinity, top: Infinity, right: -Infinity, bottom: -Infinity };
+  assert.throws(() => world.insert(nothing), /^InvalidBoxError/);
+  assert.equal(findPairs([nothing, [0, 0, 1, 1]], { dimensions: 2, missing: "skip" }).length, 0);
   world.free();
 });
 

@@ -30,8 +30,8 @@ export type Boxes<D extends Dimensions = Dimensions> = TypedNumbers | readonly n
 /**
  * One box in the form of another library: `{ minX, minY, maxX, maxY }` of rbush, with `minZ` and
  * `maxZ` in 3D; `{ min, max }` of the `Box2` and `Box3` of three.js and the bounds of matter;
- * `{ lowerBound, upperBound }` of cannon and planck; `{ x, y, width, height }` of a `DOMRect` or a
- * sprite, with `z` and `depth` in 3D; `{ x, y, w, h }`; `{ left, top, right, bottom }`; a row of numbers as in
+ * `{ lowerBound, upperBound }` of cannon and planck; `{ x, y, width, height }` of a `DOMRect`, with
+ * `z` and `depth` in 3D; `{ x, y, w, h }`; `{ left, top, right, bottom }`; a row of numbers as in
  * box-intersect. Other properties of the object are ignored.
  */
 export type BoxObject<D extends Dimensions = Dimensions> =
@@ -172,10 +172,10 @@ export function readBox(box: object, dimensions: Dimensions, name: string, into:
   return form;
 }
 
-/** Throws for a sprite that has its origin (Phaser) or anchor (Pixi) at its `x` and `y`. */
+/** Throws for a sprite, which has its origin (Phaser), anchor or pivot (Pixi) at its `x` and `y`, and may be rotated. */
 function refuseOrigin(box: object, name: string, index: number): void {
   const { originX, originY, anchor } = box as { originX?: unknown; originY?: unknown; anchor?: Corner | null };
-  if (originX || originY || anchor?.x || anchor?.y) throw new TypeError(`${labelOf(name, index)} does not begin at its position: pass its \`getBounds()\``);
+  if (originX || originY || anchor?.x || anchor?.y || ("getBounds" in box && "rotation" in box)) throw new TypeError(`${labelOf(name, index)} does not begin at its position: pass its \`getBounds()\``);
 }
 
 /** Throws if a box has other axes than those before it. */
@@ -318,7 +318,8 @@ const sides: Form = {
   given: readSides,
   read(box, corner, axis) {
     const [from, to] = [readSides(box, 0, axis), readSides(box, 1, axis)];
-    const isFlipped = typeof from === "number" && typeof to === "number" && from > to;
+    // Infinity to -Infinity are the bounds of nothing, as people accumulate them.
+    const isFlipped = typeof from === "number" && typeof to === "number" && from > to && (from < Infinity || to > -Infinity);
     return corner === 1 !== isFlipped ? to : from;
   },
 };

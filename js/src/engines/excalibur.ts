@@ -32,7 +32,7 @@ export interface ExcaliburModule {
 /** A collider of Excalibur. */
 interface Collider {
   readonly bounds: BoundingBox;
-  owner: { get(component: unknown): Body };
+  owner: { get(component: unknown): Body | undefined };
   rayCast(ray: Ray, maxDistance: number): RayCastHit | null;
   /** Of a composite collider. */
   getColliders?(): Collider[];
@@ -172,8 +172,10 @@ class Processor implements CollisionProcessor {
       boxes[4 * i + 1] = top;
       boxes[4 * i + 2] = right;
       boxes[4 * i + 3] = bottom;
-      const { group, collisionType: type } = this.#bodyOf(collider);
-      if (tracked.group === group && tracked.type === type) return;
+      const body = this.#bodyOf(collider);
+      // Excalibur lets no two collide of which one has no body, such as one for the pointer alone.
+      if (!body || (tracked.group === body.group && tracked.type === body.collisionType)) return;
+      const { group, collisionType: type } = body;
       Object.assign(tracked, { group, type });
       this.#world.setFilter(tracked.id, { category: group.category, mask: group.mask, isStatic: type === "Fixed" });
     });
@@ -210,8 +212,8 @@ class Processor implements CollisionProcessor {
     const along = ray.dir.normalize();
     const hits = this.#world.rayCastAll([ray.pos.x, ray.pos.y], [along.x, along.y], maxDistance).flatMap(({ id }) => {
       const collider = this.#world.data(id)!;
-      const { group } = this.#bodyOf(collider);
-      if ((mask & group.category) === 0 || (ignoreCollisionGroupAll && group === All)) return [];
+      const group = this.#bodyOf(collider)?.group;
+      if (group && ((mask & group.category) === 0 || (ignoreCollisionGroupAll && group === All))) return [];
       return collider.rayCast(ray, maxDistance) ?? [];
     });
     const chosen = hits.sort((a, b) => a.distance - b.distance).filter(filter);
@@ -223,7 +225,7 @@ class Processor implements CollisionProcessor {
     this.#own.debug(context, elapsed);
   }
 
-  #bodyOf(collider: Collider): Body {
+  #bodyOf(collider: Collider): Body | undefined {
     return collider.owner.get(this.#excalibur.BodyComponent);
   }
 }

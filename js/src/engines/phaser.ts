@@ -49,6 +49,8 @@ interface World {
  * their order. Colliders, single sprites, groups without physics and tilemaps stay as they are. Call it in `create`, since each start
  * of a scene makes a world.
  *
+ * A callback that moves or enables a body changes what is found in the next step, and not in this one.
+ *
  * Each overlap of groups takes O(n log n + pairs) time, and does not use arcade's own tree. If your game has no other
  * colliders of dynamic groups, `useTree: false` in its configuration saves the time to build that tree in each step.
  *

@@ -10,6 +10,9 @@ export interface PixiObject {
 
   /** What it is in. */
   readonly parent?: PixiParent | null;
+
+  /** Whether it was destroyed, after which it has no bounds. */
+  readonly destroyed?: boolean;
 }
 
 /** A `Container` that holds others. */
@@ -29,6 +32,7 @@ const kind: Kind<2, PixiObject> = {
   name: "a `Container` of Pixi",
   method: "getBounds",
   writeBox(object, boxes, at) {
+    if (object.destroyed) return false;
     // Its bounds are the same if something that it is in is invisible.
     for (let { parent } = object; parent; { parent } = parent) if (!parent.visible) return false;
     bounds = object.getBounds(false, bounds);
@@ -46,7 +50,7 @@ const kind: Kind<2, PixiObject> = {
 /**
  * Inserts a body for each sprite or container, whose box is that of `getBounds()`, in the coordinates of the stage, and whose data is the
  * object. Returns their ids, in the order of the objects. What is empty or invisible, by itself or by what it is in, pairs with
- * nothing until it has bounds. What leaves the stage still has bounds: remove its body.
+ * nothing until it has bounds, and what was destroyed with nothing. What leaves the stage still has bounds: remove its body.
  *
  * @param filter One filter for all bodies, or an array with one for each.
  *
@@ -68,7 +72,7 @@ export function insertObjects<Data>(world: BroadPhase<2, Data>, objects: readonl
  * `world.update()` and before queries. Other bodies stay where they are.
  *
  * A body is disabled while its object has no box, and in snapshots and clones of that time, too: after `restore` and in a clone,
- * enable it yourself.
+ * enable it yourself. It is enabled when its object has a box again, also if you disabled it meanwhile.
  *
  * It takes the time of `getBounds()` for each object.
  *

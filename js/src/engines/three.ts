@@ -98,7 +98,7 @@ export function insertObjects<Data>(world: BroadPhase<3, Data>, objects: readonl
  * rendering does, or `scene.updateMatrixWorld()`.
  *
  * A body is disabled while its object has no box, and in snapshots and clones of that time, too: after `restore` and in a clone,
- * enable it yourself.
+ * enable it yourself. It is enabled when its object has a box again, also if you disabled it meanwhile.
  *
  * It takes O(1) time for each object and what is in it: for the 8 corners of each geometry's box. Vertices are read once for
  * each geometry, by three.js.
@@ -118,6 +118,7 @@ export function moveObjects(world: BroadPhase<3>): void {
 /**
  * The first hit of a `Raycaster` among the bodies whose data are meshes or groups: what
  * `raycaster.intersectObjects(objects)[0]` gives. Boxes come nearest first, and three.js tests what is in them until no nearer hit is left.
+ * Of hits at the same distance it is any.
  * Lines, points and sprites, which a ray may hit beside their boxes, are not always found.
  *
  * It takes the time of {@link BroadPhase.rayCastAll} and of `intersectObject` for some of the boxes that the ray hits. Boxes in

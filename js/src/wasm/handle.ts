@@ -41,6 +41,7 @@ export class Handle<E extends Exports> {
 
   /** Frees the memory, except of an object whose call ended halfway: its parts could be freed twice. Freeing twice is not an error. */
   free(): void {
+    this.engine.calls++;
     if (this.#at) this.engine.call(this.release, this.#at);
     this.#at = 0;
   }

@@ -1,6 +1,5 @@
 import { type Boxes, checkBoxes, checkNumbers, type Dimensions } from "../boxes/boxes.js";
 import type { Passed } from "../wasm/engine.js";
-import { guard } from "../wasm/views.js";
 import { Query } from "./core.js";
 import type { Filter } from "./filter.js";
 import { Queries, signOf } from "./queries.js";
@@ -119,9 +118,9 @@ export abstract class Batches<D extends Dimensions = Dimensions> extends Queries
   #lists(query: Query, parts: readonly Part[], filter: Partial<Filter> | undefined, options: QueryOptions | undefined): Lists {
     const count = this.#ask(query, parts, filter, readChoices(options, "region"));
     if (count === 0) return { ids: new Float64Array(0), ends: new Uint32Array(0) };
-    const { engine, isView } = this.memory;
-    const ends = new Uint32Array(engine.buffer, this.memory.numbers()[2]!, count);
-    return { ids: this.memory.give(engine.detail(0), engine.detail(1)), ends: isView ? guard(engine, ends) : ends.slice() };
+    const { engine } = this.memory;
+    const ends = new Uint32Array(engine.buffer, this.memory.numbers()[2]!, count).slice();
+    return { ids: this.memory.give(engine.detail(0), engine.detail(1)), ends };
   }
 
   /** Makes queries whose numbers are those of the parts, side by side, and returns how many there are: if none, without a call. */

@@ -4,7 +4,7 @@ import { type Boxes, checkDimensions, type Dimensions } from "../boxes/boxes.js"
 import { defaultFilter, type Filter, type FilterWords, filterWords } from "./filter.js";
 import { checkOptionNames } from "../wasm/options.js";
 import { lengthOf } from "../wasm/typed.js";
-import { allocate, checkViews } from "../wasm/views.js";
+import { allocate, checkViews, guard } from "../wasm/views.js";
 import { checkId, checkIds, checkRule, readCorners, readPoint } from "./arguments.js";
 import type { WorldMemory } from "./memory.js";
 import type { Box, BroadPhaseOptions, Buffers, Changes, Corners, Numbers, Point, ProxyId } from "./types.js";
@@ -158,9 +158,12 @@ export abstract class Bodies<D extends Dimensions = Dimensions> {
       const Floats = this.memory.isDouble ? Float64Array : Float32Array;
       return allocate(() => ({ ids: new Float64Array(count), boxes: new Floats(width * count) }));
     }
-    this.memory.rowsFor(count);
-    const ids = this.memory.idsFor(count);
-    return { ids, boxes: this.memory.rowsFor(count) };
+    const { memory } = this;
+    memory.rowsFor(count);
+    const ids = memory.idsFor(count); // may let the memory grow
+    const boxes = memory.rowsFor(count);
+    memory.engine.calls++;
+    return { ids: guard(memory.engine, ids), boxes: guard(memory.engine, boxes) };
   }
 
   /**
@@ -293,7 +296,8 @@ export abstract class Bodies<D extends Dimensions = Dimensions> {
    * call.
    *
    * If the pairs of a crowd do not fit into memory, it throws an `OutOfMemoryError`, and the world is as before. Once the
-   * crowd is apart, removed or filtered, the next call reports what changed.
+   * crowd is apart, removed or filtered, the next call reports what changed. If they were found, but JavaScript had no memory
+   * for the arrays, the next call returns them instead of updating.
    */
   update(): Changes {
     const changes = this.memory.isView ? this.#changes : { begun: none, ended: none };

@@ -173,8 +173,9 @@ export class BroadPhase<D extends Dimensions = Dimensions, Data = unknown> exten
     const isAnyGone = this.#leaving.length + this.#left.length > 0;
     const changes = super.update();
     if (isAnyGone) {
-      // After a `restore`, such a body may be here again.
-      for (const id of this.#left) if (!this.contains(id)) this.#data.delete(id);
+      // After a `restore`, such a body may be here again, or have been removed again.
+      const again = new Set(this.#leaving);
+      for (const id of this.#left) if (!again.has(id) && !this.contains(id)) this.#data.delete(id);
       this.#left = this.#leaving;
       this.#leaving = [];
     }

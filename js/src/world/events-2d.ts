@@ -8,8 +8,8 @@ import type { EventsOptions } from "./types.js";
 export const core: Core<WorldExports> = new Core("world_new", "sweep-and-prune/events-2d");
 
 /**
- * The `BroadPhase` of `sweep-and-prune/broad-phase` for 1D and 2D in single precision, without queries, casts,
- * lists of pairs and snapshots. What it has works in the same way and takes as long.
+ * The `BroadPhase` of `sweep-and-prune/broad-phase` for 1D and 2D in single precision, without data, the
+ * options of `insert`, `boxes`, excluded pairs, queries, casts, lists of pairs and snapshots. What it has works in the same way and takes as long.
  *
  * ```js
  * using world = new BroadPhase({ dimensions: 2 });

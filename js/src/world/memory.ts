@@ -244,6 +244,7 @@ export function newWorld(
   isFat = false,
 ): Handle<WorldExports> {
   const at = engine.call((exports) => exports.world_new(dimensions, isDouble ? 1 : 0, margin, prediction, isFat ? 1 : 0));
-  if (at === 0) throw new RangeError("`margin` or `prediction` does not fit in single precision");
+  // The cores for events have some numbers of dimensions each.
+  if (at === 0) throw new RangeError("`margin` or `prediction` does not fit in single precision, or `wasm` is of another entry");
   return new Handle(engine, at, "BroadPhase", (exports, world) => exports.world_free(world));
 }

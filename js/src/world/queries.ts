@@ -95,7 +95,8 @@ export abstract class Queries<D extends Dimensions = Dimensions> extends Bodies<
    * The `k` bodies nearest to a point, or all if there are fewer, sorted by distance and then by slot.
    * None is farther away than `maxDistance`: no farther parts of the world are searched, so a small one saves time. A
    * function as `filter` is called nearest first, until it
-   * has returned true `k` times.
+   * has returned true `k` times. Distances are compared as squares, which overflow beyond 1e154: only double precision has
+   * such coordinates.
    *
    * @throws `RangeError` if the point is not finite, `k` not a whole number, or the distance negative or NaN.
    */

@@ -10,7 +10,7 @@ export type ProxyId = number;
 
 /**
  * The slot of a body: an index into your own tables. It is less than the greatest number of bodies
- * that there ever were at once.
+ * that there ever were at once, where those that were removed since the last update count, too.
  */
 export function slotOf(id: ProxyId): number {
   return id % 2 ** 26;
