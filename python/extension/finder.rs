@@ -140,7 +140,7 @@ impl Finder {
                 return Ok(true);
             };
             let (finder, each) = (&mut search.finder, each.unbind());
-            let streamed = run(py, sets.boxes(), 1, None, |_| {
+            let streamed = run(py, sets.boxes(), 1, None, |progress| {
                 let mut buffer: Vec<[u32; 2]> = Vec::new();
                 let mut end = Ok(true);
                 let mut hand_over = |chunk: &[[u32; 2]]| {
@@ -150,7 +150,7 @@ impl Finder {
                         _ => ControlFlow::Break(()),
                     }
                 };
-                let complete = finder.for_each_chunk(sets.a, sets.b, &mut |mut found| {
+                let streamed = finder.stream(sets.a, sets.b, progress, &mut |mut found| {
                     while buffer.len() + found.len() >= size {
                         let (now, later) = found.split_at(size - buffer.len());
                         buffer.extend_from_slice(now);
@@ -161,7 +161,7 @@ impl Finder {
                     buffer.extend_from_slice(found);
                     ControlFlow::Continue(())
                 })?;
-                if complete.is_continue() && !buffer.is_empty() {
+                if streamed == Some(ControlFlow::Continue(())) && !buffer.is_empty() {
                     // Its result counts as if more pairs could follow.
                     let _ = hand_over(&buffer);
                 }

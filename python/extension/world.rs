@@ -97,13 +97,13 @@ impl World {
             let count = space.copy(&boxes)?;
             let done = space.run(py, count, |world| world.insert_many(count, filter_of(filter)))?;
             let ids = done.map_err(|error| raise(py, error, argument, &[]))?;
-            let numbers = numbers(py, ids.iter().map(|&id| PythonId::from_proxy(id).0))?;
-            // A signal that came meanwhile would leave bodies whose ids are lost.
-            if let Err(interrupt) = py.check_signals() {
+            // An error, or a signal that came meanwhile, would leave bodies whose ids are lost.
+            let numbers = numbers(py, ids.iter().map(|&id| PythonId::from_proxy(id).0))
+                .and_then(|numbers| py.check_signals().map(|()| numbers));
+            if numbers.is_err() {
                 space.run(py, count, |world| world.remove_many(&ids))?.ok();
-                return Err(interrupt);
             }
-            Ok(numbers)
+            numbers
         })
     }
 

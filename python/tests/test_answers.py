@@ -209,6 +209,8 @@ def test_chunks_without_values_are_of_the_type_of_their_column(kind: str) -> Non
 def test_options_that_do_not_fit_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
     np.save("a.npy", np.array([[0, 2], [1, 5]]))
     Path("a.bed").write_text("c\t0\t5\n")
+    Path("n.csv").write_text("start,end,count\n0,5,x\n3,8,x\n")
+    assert main(["merge", "n.csv", "--by", "count", "--to", "bed"]) == 0 and capsys.readouterr().out == "x\t0\t8\t2\n"
     for arguments, said in (
         (["count", "a.npy", "--id", "x"], "are for --each"),
         (["count", "a.npy", "-o", "x.csv"], "are for --each"),
@@ -223,6 +225,7 @@ def test_options_that_do_not_fit_are_refused(capsys: pytest.CaptureFixture[str])
         (["join", "a.npy", "a.npy", "--measure", "area"], "must be of size, fraction_a, fraction_b, iou, not area"),
         (["pairs", "a.npy", "--fraction", "50%"], "--fraction is 50%; it must be a number from 0 to 1"),
         (["pairs", "a.npy", "--fraction", "0.5,nan"], "--fraction is 0.5,nan; it must be a number from 0 to 1"),
+        (["merge", "n.csv", "--by", "count"], "--by count: merge writes a column of its own with this name"),
         (["coverage", "a.npy", "a.npy", "--margin", "1"], "leave out --margin"),
         (["nearest", "a.npy", "a.npy", "--margin", "1"], "pass --max-distance"),
         (["nearest", "a.npy", "a.npy", "-k", "0"], "k must be from 1"),

@@ -137,6 +137,8 @@ def test_queries_leave_out_what_is_excluded() -> None:
     assert world.overlapping(area, exclude=a).tolist() == [b, c]
     assert world.overlapping(area, exclude=np.int64(a)).tolist() == [b, c]
     assert world.overlapping(area, exclude=[c, a, gone, -1]).tolist() == [b]
+    for large in (2**63 + a, 2**70 + a, np.uint64(2**63 + a), np.array([2**63 + a], np.uint64), [2**70 + a]):
+        assert world.overlapping(area, exclude=large).tolist() == [a, b, c]
     assert world.overlapping_many([area, area], exclude=np.array([b])).ids.tolist() == [a, c, a, c]
     assert world.containing(point, exclude=a).tolist() == [b, c]
     assert world.containing_many([point], exclude=(a, b)).ids.tolist() == [c]

@@ -520,12 +520,17 @@ def test_large_files_are_read_as_small_ones_are(in_a_folder: None, capsys: pytes
         (arrow.table({"start": arrow.array([0, 1]), "end": uint}), "coordinates beyond 2^53 are not exact"),
         (arrow.table({"start": uint, "end": uint}), "coordinates beyond 2^53 are not exact"),
         (arrow.table({"start": [1, None], "end": [LARGE + 1, 2]}), "coordinates beyond 2^53 are not exact"),
+        (arrow.table({"start": [Decimal("0.1")], "end": [Decimal(1)]}), "coordinates are decimals that float64 does"),
         (arrow.table({"minx": [0], "maxx": [1], "Min_X": [0]}), "columns minx and Min_X are both the same coordinate"),
         (arrow.Table.from_arrays([arrow.array([0])] * 3, ["start", "end", "end"]), "both the same coordinate"),
         (arrow.table({"start": [True], "end": [2]}), "column start must have numbers, not truth values"),
     ):
         parquet.write_table(table, "a.parquet")
         assert message in refused(capsys, "a.parquet", *limited)
+        if "beyond" in message or "decimals" in message:
+            grouped = table.append_column("n", arrow.array([0] * len(table)))
+            parquet.write_table(grouped, "a.parquet")
+            assert message in refused(capsys, "a.parquet", "--by", "n", "--missing", "skip", *limited)
     twice = arrow.Table.from_arrays([arrow.array([0, 1])] * 3, ["a", "b", "b"])
     parquet.write_table(twice, "a.parquet")
     for options in ([], limited):
@@ -539,6 +544,15 @@ def test_large_files_are_read_as_small_ones_are(in_a_folder: None, capsys: pytes
         parquet.write_table(table, "a.parquet")
         for options in ([], limited):
             assert counted(capsys, "a.parquet", "--missing", "skip", *options) == 1, (dtype, options)
+    text, cents = ["a", None, "b", "a"], [Decimal("0.1"), None, Decimal("0.2"), Decimal("0.1")]
+    groups = {"string_view": text, "binary_view": text, "decimal32": cents, "decimal64": cents}
+    for dtype, values in groups.items():
+        if hasattr(arrow, dtype):
+            kind = getattr(arrow, dtype)(*([5, 2] if values is cents else []))
+            table = arrow.table({"start": [0.0] * 4, "end": [1.0] * 4, "n": arrow.array(values, kind)})
+            parquet.write_table(table, "a.parquet")
+            for options in ([], limited):
+                assert counted(capsys, "a.parquet", "--by", "n", *options) == 1, (dtype, options)
 
 
 def test_groups_of_objects_may_be_any_numbers() -> None:

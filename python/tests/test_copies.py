@@ -24,6 +24,24 @@ class NamedWorld(sap.BroadPhase):
         self.tags = {"a": [1]}
 
 
+class SlottedFinder(sap.PairFinder):
+    __slots__ = ("__mine", "empty", "name")
+
+    def put(self, mine: object) -> None:
+        self.__mine = mine
+
+    def get(self) -> object:
+        return self.__mine
+
+
+class SlottedWorld(sap.BroadPhase):
+    __slots__ = ("name",)
+
+    @property
+    def double(self) -> object:
+        return vars(self)["double"]
+
+
 COPIES: list[Any] = [copy.copy, copy.deepcopy, lambda value: pickle.loads(pickle.dumps(value))]
 
 
@@ -50,6 +68,22 @@ def test_a_copied_world_keeps_its_class_its_attributes_and_its_state(duplicate: 
     assert again.state_hash() == world.state_hash() and repr(again) == repr(world)
     again.insert([0, 0, 1, 1])
     assert len(again) == len(world) + 1
+
+
+@pytest.mark.parametrize("duplicate", COPIES)
+def test_copies_have_what_is_in_slots(duplicate: Any) -> None:
+    finder = SlottedFinder(1)
+    finder.name = "mine"  # type: ignore[attr-defined]
+    finder.put([1])
+    vars(finder)["other"] = 2
+    again = duplicate(finder)
+    assert (again.name, again.get(), again.other) == ("mine", [1], 2) and not hasattr(again, "empty")
+    assert len(again.find([[0, 1], [1, 2]])) == 1
+    world = SlottedWorld(1)
+    world.name = "mine"  # type: ignore[attr-defined]
+    vars(world)["double"] = 3
+    again = duplicate(world)
+    assert (again.name, again.double) == ("mine", 3) and "name" not in vars(again)
 
 
 def test_a_deep_copy_shares_no_attributes() -> None:

@@ -255,6 +255,54 @@ def test_geoparquet_has_a_column_of_boxes_or_geometries() -> None:
     boxes = pyarrow.StructArray.from_arrays([pyarrow.array(column) for column in BOXES.T], names)
     pyarrow.parquet.write_table(pyarrow.table({"n": np.arange(len(BOXES)), "bbox": boxes}), "nested.parquet")
     assert np.array_equal(found(sap.find_pairs("nested.parquet", out="n", workers=0, cells=5)), PAIRS)
+    # Geometries count before columns that are known as boxes, as in memory.
+    others = frame.assign(start=0, end=pandas.Timestamp("2026-01-01"), minx=0, maxx=1, xmin=0)
+    for options in ({}, {"geometry_encoding": "geoarrow"}):
+        others.to_parquet("others.parquet", **options)
+        assert np.array_equal(found(sap.find_pairs("others.parquet", cells=5)), PAIRS)
+        assert np.array_equal(in_order(core.find_pairs(pyarrow.parquet.read_table("others.parquet"))), PAIRS)
+        with pytest.raises(ValueError, match=r'others\.parquet has geometries, .*: leave out format="xywh"'):
+            sap.find_pairs("others.parquet", format="xywh")
+    assert sap.count_pairs("others.parquet", columns=["minx", "maxx"]) == len(BOXES) * (len(BOXES) - 1) // 2
+    others.iloc[:0].to_parquet("none.parquet")
+    assert sap.count_pairs("none.parquet") == 0
+
+
+def test_precision_is_that_of_the_same_table_in_memory() -> None:
+    single = np.array([[0, 0, 0.1, 0.1], [0.3, 0.3, 0.4, 0.4]], np.float32)
+    margin = 0.2  # finds the pair in single precision only
+    assert core.count_pairs(single, margin=margin) == 1 and core.count_pairs(single.astype(float), margin=margin) == 0
+    names = ["xmin", "ymin", "xmax", "ymax"]
+    columns = [pyarrow.array(column) for column in single.T]
+    lists = pyarrow.FixedSizeListArray.from_arrays(pyarrow.array(single.ravel()), 4)
+    halves = pyarrow.table([pyarrow.array(column.astype(np.float16)) for column in single.T], names=names)
+    tables = [
+        pyarrow.table(columns, names=names),
+        pyarrow.table({"bbox": pyarrow.StructArray.from_arrays(columns, names)}),
+        pyarrow.table({"bbox": lists}),
+        pyarrow.table({"bbox": pyarrow.array(lists.to_pylist(), pyarrow.list_(pyarrow.float32()))}),
+        halves,
+    ]
+    for one in tables:
+        pyarrow.parquet.write_table(one.append_column("n", [[1, 1]]), "a.parquet")
+        gaps = [margin] if one is not halves else [float(np.float16(0.3)) - float(np.float16(0.1)) - 1e-9]
+        for gap in gaps:
+            wanted = core.count_pairs(one, margin=gap)
+            assert wanted == (one is not halves)
+            for by in (None, "n"):
+                assert sap.count_pairs("a.parquet", margin=gap, by=by, workers=0) == wanted, (one.schema, by)
+    for dtype in ("float32", "Float32", "float[pyarrow]", "float64"):
+        frame = pandas.DataFrame(single, columns=names).astype(dtype)
+        wanted = core.count_pairs(frame, margin=margin)
+        assert wanted == (dtype != "float64")
+        assert sap.count_pairs(dask.dataframe.from_pandas(frame, npartitions=2), margin=margin) == wanted, dtype
+
+
+def test_a_column_may_be_chosen_twice() -> None:
+    points = pandas.DataFrame({"lon": [0.0, 1.0, 0.0], "lat": [0.0, 1.0, 0.0]})
+    points.to_parquet("a.parquet")
+    for boxes in (dask.dataframe.from_pandas(points, npartitions=2), "a.parquet"):
+        assert found(sap.find_pairs(boxes, columns=["lon", "lat"] * 2)).tolist() == [[0, 2]]
 
 
 def test_options_are_those_of_the_finder() -> None:

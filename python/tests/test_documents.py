@@ -163,6 +163,14 @@ reveal_type(world.insert([0, 0, 1, 1]))
 reveal_type(world.update().begun)
 reveal_type(world.ray_cast([0, 0], [1, 0]))
 world.remove(world.ids()[0])
+points = {"x": [0.5], "y": [0.5]}
+boxes = {"minx": [0], "miny": [0], "maxx": [1], "maxy": [1]}
+world.nearest_many(points)
+world.containing_many(points)
+world.within_many(points, 1)
+world.ray_cast_many(points, points)
+world.box_cast_many(boxes, points)
+world.set_swept_many([0], boxes, boxes)
 world.insert([0, 0, 1, 1], filter=5)
 """
     )

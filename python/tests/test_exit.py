@@ -63,6 +63,12 @@ def after_the_package():
     before = calls
     time.sleep(0.2)
     print(calls - before, len(sap.find_pairs([[0, 1], [1, 2]])))
+    for left in (chunks, sap.iter_chunks([[0, 1], [1, 2]])):  # nothing goes on in other threads
+        try:
+            next(left)
+        except RuntimeError as error:
+            print(error)
+    sap.for_each_chunk([[0, 1], [1, 2]], print)
 
 atexit.register(after_the_package)  # the last one that is registered is called first
 import sweep_and_prune as sap
@@ -87,4 +93,5 @@ while calls < 100:
 
 def test_when_the_interpreter_exits_other_threads_stop_and_its_own_goes_on() -> None:
     done = subprocess.run([sys.executable, "-c", AT_EXIT], capture_output=True, text=True, timeout=600)
-    assert (done.returncode, done.stdout, done.stderr) == (0, "0 1\n", "")
+    refused = "no other thread can search while the interpreter exits: use for_each_chunk\n"
+    assert (done.returncode, done.stdout, done.stderr) == (0, f"0 1\n{2 * refused}[[0 1]]\n", "")

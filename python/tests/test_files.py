@@ -314,9 +314,41 @@ def test_a_header_of_a_format_without_one_is_refused(capsys: pytest.CaptureFixtu
     message = refused(capsys, "count", "a.bed", "--header")
     assert message == "a.bed is of a format whose lines have no header: leave out --header\n"
     assert said(capsys, "count", "a.bed", "--no-header") == "0\n"
+    Path("b.csv").write_text("chrom,start,end\nc,4,9\n")
+    arguments = ["count", "a.bed", "b.csv", "--header", "--closed", "left", "--by", "chrom"]
+    assert said(capsys, *arguments) == "1\n"
+    pytest.importorskip("distributed")
+    limited = ["--memory-limit", "1GB", "--workers", "0", "--quiet"]
+    assert said(capsys, *arguments, *limited) == "1\n"
+    assert "a.bed is of a format whose lines have no header" in refused(capsys, "count", "a.bed", "--header", *limited)
+
+
+# Arrow.
+
+
+def test_arrow_of_a_pipe_is_read_from_a_file(capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("pyarrow")
+    Path("a.csv").write_text("start,end\n0,5\n3,8\n20,30\n")
+    written = subprocess.run([*SAP, "merge", "a.csv", "--to", "arrow"], capture_output=True)
+    for name in ("a.arrow", "a.feather"):
+        Path(name).write_bytes(written.stdout)
+        assert boxes_of(name) == [[0, 8], [20, 30]]
+    Path("a.arrow").write_text("start,end\n0,5\n")
+    assert refused(capsys, "count", "a.arrow").startswith("a.arrow cannot be read: ")
 
 
 # Arrays of NumPy.
+
+
+def test_an_array_of_numpy_may_have_named_columns(capsys: pytest.CaptureFixture[str]) -> None:
+    rows = np.array([(5, 0, 1), (8, 3, 1), (9, 4, 2)], [("end", "i4"), ("start", "i4"), ("n", "i4")])
+    np.save("a.npy", rows)
+    assert said(capsys, "count", "a.npy") == "3\n"
+    assert said(capsys, "pairs", "a.npy", "--by", "n", "--id", "end,n") == "a_end,a_n,b_end,b_n\n5,1,8,1\n"
+    assert boxes_of("a.npy", "start", "n") == [[0, 1], [3, 1], [4, 2]]
+    assert "a.npy has no column 'x'; its columns are end, start, n" in refused(capsys, "count", "a.npy", "--by", "x")
+    np.save("a.npy", rows[["n"]])
+    assert "a.npy has no columns that are known as boxes" in refused(capsys, "count", "a.npy")
 
 
 def test_what_is_wrong_with_an_array_of_numpy_is_said(capsys: pytest.CaptureFixture[str]) -> None:
@@ -369,6 +401,21 @@ def test_geojson_is_read_in_each_of_its_forms(capsys: pytest.CaptureFixture[str]
     assert "a.topojson is TopoJSON: convert it to GeoJSON first" in refused(capsys, "count", "a.topojson")
     message = refused(capsys, "count", "a.geojson", "--format", "xywh")
     assert message == "a.geojson is of a format that says where boxes begin and end: leave out --format\n"
+
+
+def test_boxes_may_be_properties_of_shapes(capsys: pytest.CaptureFixture[str]) -> None:
+    point = {"type": "Point", "coordinates": [0, 0]}
+    features = [
+        {"type": "Feature", "properties": {"from": start, "to": end}, "geometry": point}
+        for start, end in ((0, 3), (2, 2**53 + 1), (4, None))
+    ]
+    Path("a.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": features}))
+    assert said(capsys, "count", "a.geojson") == "3\n"
+    assert said(capsys, "pairs", "a.geojson", "--columns", "from,to", "--missing", "skip") == "a,b\n0,1\n"
+    message = refused(capsys, "count", "a.geojson", "--columns", "from,to")
+    assert message.startswith("a.geojson, feature 2 (the first is 0), column to: the box has a NaN")
+    message = refused(capsys, "count", "a.geojson", "--columns", "from,end")
+    assert message == "a.geojson has no column 'end'; its columns are from, to, id\n"
 
 
 def test_detections_of_coco_pair_within_their_image(capsys: pytest.CaptureFixture[str]) -> None:
@@ -579,6 +626,21 @@ def test_files_of_gis_are_read_with_their_attributes(capsys: pytest.CaptureFixtu
     assert said(capsys, "pairs", "a.gpkg", "--missing", "skip", "--id", "n") == "a,b\na,d\n"
     for name in ("a.fgb", "a.shp"):
         assert boxes_of(name) == [[0, 0, 1, 1]]
+
+
+@pytest.mark.parametrize("name", ["a.gpkg", "a.fgb", "a.shp"])
+def test_integers_of_gis_are_not_rounded_because_others_are_missing(
+    name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    geopandas, pandas = pytest.importorskip("geopandas"), pytest.importorskip("pandas")
+    pytest.importorskip("pyarrow")
+    numbers = {"n": pandas.array([2**53 + 1, 2**53, None], "Int64"), "yes": pandas.array([1, 0, None], "boolean")}
+    frame = geopandas.GeoDataFrame(numbers, geometry=geopandas.points_from_xy([0, 0, 0], [0, 0, 0]), crs=3857)
+    frame.assign(half=[0.5, None, 2]).to_file(name)
+    assert said(capsys, "count", name, "--by", "n") == "0\n"
+    assert said(capsys, "pairs", name, "--id", "n") == f"a,b\n{2**53 + 1},{2**53}\n{2**53 + 1},\n{2**53},\n"
+    rows = said(capsys, "join", name, name, "--how", "semi", "--id", "yes,half").splitlines()
+    assert rows == ["a_yes,a_half", "True,0.5", "False,", ",2.0"]
 
 
 GENES = "chr1\thavana\texon\t{}\t{}\t.\t+\t.\tgene_id {}"

@@ -264,6 +264,9 @@ def test_more_than_double_precision_is_refused_where_it_would_be_rounded() -> No
                 find(boxes)
     with pytest.raises(ValueError, match=r"^margin is .*, which double precision does not have"):
         sap.find_pairs([[0, 1], [2, 3]], margin=np.longdouble(1) - step)
+    tiny = np.array([[0, np.finfo(np.longdouble).tiny]])
+    with np.errstate(all="raise"), pytest.raises(ValueError, match=r"^boxes\[0\]\[1\] is .*, which double precision"):
+        sap.find_pairs(tiny)
 
 
 def test_rows_with_names_are_read_by_them() -> None:
@@ -460,6 +463,9 @@ def test_groups_may_be_of_any_type() -> None:
     ):
         for values in (by, np.array(by, object)):
             assert in_order(sap.find_pairs(boxes, by=values)).tolist() == wanted
+    for nothing in (np.nan, None) if hasattr(np, "dtypes") and hasattr(np.dtypes, "StringDType") else ():
+        text = np.array(["a", nothing, nothing, "a", "b", "c"], np.dtypes.StringDType(na_object=nothing))
+        assert sap.find_pairs(boxes, by=text).tolist() == [[0, 3]]
     with pytest.raises(TypeError, match="by has numbers in a, but text in b, which are never equal"):
         sap.find_pairs_between(boxes, boxes, by=([1] * 6, ["1"] * 6))
     unhashable = np.empty(6, object)
@@ -483,6 +489,7 @@ def test_frames_of_pandas() -> None:
     assert same(sap.find_pairs(frame))
     frame.loc[3, "x2"] = pandas.NA
     assert same(sap.find_pairs(frame, missing="skip"), PAIRS[~np.isin(PAIRS, [3]).any(axis=1)])
+    assert same(sap.find_pairs(frame.dropna().assign(collect=1, column_names=2)), sap.find_pairs(frame.dropna()))
     index = pandas.IntervalIndex.from_arrays([0, 1, 3], [1, 3, 4])  # closed on the right
     assert len(sap.find_pairs(index)) == 0
     assert sap.find_pairs(index.set_closed("both")).tolist() == [[0, 1], [1, 2]]

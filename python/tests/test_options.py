@@ -107,6 +107,19 @@ def test_a_margin_does_not_hide_invalid_boxes_and_errors_name_the_row_that_was_p
             sap.find_pairs_between([[0, 1]], np.array([[np.nan, 1], [0, 1], [3, 2]]), missing="skip", margin=margin)
 
 
+def test_numbers_that_become_0_or_infinite_raise_no_error_of_numpy() -> None:
+    tiny, single = 1e-50, np.array([[0, 1], [2, 3]], np.float32)
+    world, finder = sap.BroadPhase(1, np.float32), sap.PairFinder(1, np.float32)
+    with np.errstate(all="raise"):
+        assert world.box(world.insert([0, tiny])).tolist() == [0, 0]
+        assert world.box_many(world.insert_many([[0, tiny]])).tolist() == [[0, 0]]
+        assert len(world.within([0], tiny)) == len(world.nearest([0], 2, max_distance=tiny).ids) == 2
+        assert finder.count([[0.0, tiny], [0.0, 1.0]], margin=tiny) == 1
+        assert len(sap.find_pairs(single, margin=tiny)) == len(sap.find_pairs(single, wrap=1e200)) == 0
+        assert len(sap.find_pairs([[0.0, 5e-324], [2.0, 3.0]], format="cxcywh")) == 0
+        assert sap.nearest([[0, 0, 0, 0]], [[1e-200, 0, 1, 1]]).distances.tolist() == [0]
+
+
 def test_options_compose() -> None:
     boxes = random_boxes(200, 2, np.float64)
     by = np.arange(200) % 3
@@ -140,6 +153,26 @@ def test_chunks_are_the_pairs_in_their_order(dimensions: int) -> None:
     assert np.array_equal(np.concatenate(seen), between)
     assert not sap.for_each_chunk_between(a, b, lambda chunk: False)
     assert np.array_equal(in_order(between), pairs_between(a, b))
+
+
+@pytest.mark.parametrize("closed", ["both", "left"])
+def test_chunks_of_whole_intervals_in_groups_are_in_the_same_order(closed: str) -> None:
+    random = np.random.default_rng(5)
+    starts, lengths = random.integers(0, 2000, 500), random.integers(1, 90, 500)
+    a, b = np.split(np.stack([starts, starts + lengths], axis=1), [300])
+    of_a, of_b = np.arange(300) % 7, np.arange(200) % 7
+    options: dict[str, Any] = {"closed": closed, "by": of_a}
+    found = sap.find_pairs(a, **options)
+    seen: list[Any] = []
+    assert sap.for_each_chunk(a, seen.append, size=9, **options) and len(seen) > 9
+    assert np.array_equal(np.concatenate(seen), found)
+    assert np.array_equal(np.concatenate(list(sap.iter_chunks(a, size=9, **options))), found)
+    options["by"] = (of_a, of_b)
+    between = sap.find_pairs_between(a, b, **options)
+    seen = []
+    assert sap.for_each_chunk_between(a, b, seen.append, size=9, **options) and len(seen) > 9
+    assert np.array_equal(np.concatenate(seen), between)
+    assert np.array_equal(np.concatenate(list(sap.iter_chunks_between(a, b, size=9, **options))), between)
 
 
 def test_an_iteration_that_is_left_ends_its_search() -> None:

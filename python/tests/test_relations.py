@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 import sweep_and_prune as sap
+
+
+@pytest.fixture(autouse=True)
+def in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
 
 
 def test_relations_of_duckdb_are_tables() -> None:
@@ -28,6 +34,32 @@ def test_relations_of_duckdb_are_tables() -> None:
         sap.join(relation, relation)
     assert sap.find_pairs([[0, 9]] * 3, by=relation).tolist() == []
     assert sap.find_pairs([[0, 9]] * 2, by=duckdb.sql("select 1 as a, 'x' as b from range(2)")).tolist() == [[0, 1]]
+
+
+def test_what_can_be_looked_at_once_is_looked_at_once() -> None:
+    duckdb, pyarrow = pytest.importorskip("duckdb"), pytest.importorskip("pyarrow")
+    a = pyarrow.table({"start": [0, 1, 10, 30, 50], "end": [2, 3, 12, 31, 50], "kind": [*"aabbb"]})
+    b = pyarrow.table({"start": [4, 20, 2], "end": [5, 21, 11], "kind": [*"abb"]})
+    calls: list[Any] = [
+        lambda a, b: sap.find_pairs(a, by="kind"),
+        lambda a, b: sap.find_pairs([[0, 9]] * 5, by=a),
+        lambda a, b: sap.cluster(a, closed="left"),
+        lambda a, b: sap.merge(a).intervals,
+        lambda a, b: sap.merge(a, by="kind").intervals,
+        sap.coverage,
+        lambda a, b: sap.nearest(a, b).distances,
+        lambda a, b: sap.nearest(a, b, by="kind", max_distance=9).distances,
+    ]
+    for call in calls:
+        streams = (pyarrow.RecordBatchReader.from_batches(one.schema, one.to_batches()) for one in (a, b))
+        assert call(*streams).tolist() == call(a, b).tolist()
+    # The query returns its rows in another order each time.
+    rows = duckdb.sql('select 10 * n as "start", 10 * n + 5 as "end" from range(99) t(n) order by random()')
+    every = [[0, 1000]]
+    assert (sap.coverage(rows, every) == 5).all() and sap.coverage(every, rows).tolist() == [99 * 5]
+    found = sap.merge(rows).intervals
+    assert sorted(found[:, 0]) == [*range(0, 990, 10)] and (found[:, 1] - found[:, 0] == 5).all()
+    assert sorted(sap.nearest(rows, [[0, 0]]).distances) == [*range(0, 990, 10)]
 
 
 def test_lazy_frames_are_refused_with_what_to_pass() -> None:
@@ -63,6 +95,28 @@ def test_geometries_of_arrow_are_their_bounds(encoding: str) -> None:
     assert sap.count_pairs_between(table, frame, missing="skip") == sap.count_pairs_between(
         frame, frame, missing="skip"
     )
+
+
+def test_geometries_count_before_columns_that_are_known_as_boxes() -> None:
+    parquet, shapely = pytest.importorskip("pyarrow.parquet"), pytest.importorskip("shapely")
+    frame = shapes().iloc[[0, 3]].assign(start=0, end=1)
+    for options in ({}, {"geometry_encoding": "geoarrow"}):
+        frame.to_parquet("a.parquet", **options)
+        table = parquet.read_table("a.parquet")
+        for one in (frame, table, *table.to_batches()):
+            assert sap.count_pairs(one) == 0 and sap.count_pairs(one, margin=1) == 1
+        with pytest.raises(ValueError, match='boxes has geometries, whose bounds are corners: leave out format="xywh"'):
+            sap.find_pairs(table, format="xywh")
+        assert sap.count_pairs(table.select(["start", "end"])) == 1
+    other = frame.to_crs("EPSG:4326")
+    other.to_parquet("b.parquet")
+    with pytest.raises(ValueError, match="a and b have different coordinate reference systems, EPSG:"):
+        sap.find_pairs_between(table, parquet.read_table("b.parquet"))
+    plain = table.drop_columns(["geometry"]).append_column("geometry", [shapely.to_wkb(frame.geometry.array)])
+    plain = plain.replace_schema_metadata(table.schema.metadata)
+    assert sap.count_pairs(plain) == 0 and sap.count_pairs(plain, margin=1) == 1
+    with pytest.raises(ValueError, match='the metadata "geo" are not those of GeoParquet'):
+        sap.find_pairs(plain.replace_schema_metadata({"geo": "[]"}))
 
 
 def test_points_of_geoarrow_are_no_intervals() -> None:

@@ -486,6 +486,8 @@ def test_ids_of_every_kind_of_whole_number() -> None:
         assert world.box_many(form).tolist() == [[0, 1], [5, 6]]
     assert world.box(ids[1]).tolist() == world.box(np.int64(ids[1])).tolist() == [5, 6]
     assert ids[0] in world and int(ids[0]) in world and True not in world
+    for large in (np.array([2**63 + 1, 1], np.uint64), [2**63 + 1, 1], [2**70, 1], (-(2**70), 1)):
+        assert world.contains_many(large).tolist() == [False, True]
     for stale in (-1, -(2**70), 2**70, 2, 2**32):
         assert stale not in world
         with pytest.raises(sap.StaleProxyError) as caught:
@@ -541,6 +543,9 @@ def test_what_is_no_filter_is_refused(wrong: Any) -> None:
         ("mask", -(2**31) - 1),
         ("group", 2**31),
         ("group", None),
+        ("is_static", "False"),
+        ("is_static", float("nan")),
+        ("is_static", None),
     ],
 )
 def test_a_filter_is_checked_when_it_is_made(field: str, value: Any) -> None:
@@ -548,6 +553,38 @@ def test_a_filter_is_checked_when_it_is_made(field: str, value: Any) -> None:
         sap.Filter(**{field: value})
     for made in (pickle.loads(pickle.dumps(sap.Filter(2, 3))), copy.copy(sap.Filter(2, 3))):
         assert made == sap.Filter(2, 3) == (2, 3, 0, False) and type(made) is sap.Filter
+
+
+def test_no_filter_is_the_default_only_of_new_bodies() -> None:
+    world = sap.BroadPhase(1)
+    ids = world.insert_many([[0, 1]], None)
+    assert world.filter_many([*ids, world.insert([0, 1], None)]) == [sap.Filter(), sap.Filter()]
+    ghost, nothing = sap.Filter(group=-1), None
+    world.set_filter_many(ids, ghost)
+    for call in (
+        lambda: world.set_filter(ids[0], nothing),  # type: ignore[arg-type]
+        lambda: world.set_filter_many(ids, nothing),  # type: ignore[arg-type]
+        lambda: ghost.allows(nothing),  # type: ignore[arg-type]
+    ):
+        with pytest.raises(TypeError, match="filter must be a Filter, not a NoneType"):
+            call()
+    assert world.filter(ids[0]) == ghost
+
+
+def test_integers_of_any_size_are_coordinates_alone_and_in_rows() -> None:
+    large, world = 2**70, sap.BroadPhase(1)
+    a, b = world.insert([-large, large]), world.insert_many([[-large, large]])[0]
+    world.set(a, [0, large])
+    assert world.box_many([a, b]).tolist() == [[0, large], [-large, large]]
+    assert world.containing([large]).tolist() == world.containing_many([[large]]).ids.tolist() == [a, b]
+    assert world.within_many([[0]], [large]).ids.tolist() == [a, b]
+    calls: Any = (lambda: world.insert([0, 10**400]), lambda: world.insert_many([[0, 10**400]]))
+    for call in calls:
+        with pytest.raises(ValueError, match="has numbers that are too large for float64"):
+            call()
+    odd: Any = [object(), 1]
+    with pytest.raises(TypeError, match="box must be numbers, not of dtype object"):
+        world.insert(odd)
 
 
 def test_bits_of_filters_may_be_written_as_signed_numbers() -> None:

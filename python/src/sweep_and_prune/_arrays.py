@@ -10,7 +10,7 @@ from typing import Any, Protocol, Union
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from ._columns import as_array, in_double
+from ._columns import as_array, exact_numbers, in_double
 from ._errors import StaleProxyError
 from ._inputs import Raw, intervals, is_named, point_rows, raw_boxes
 
@@ -23,6 +23,8 @@ class ArrowData(Protocol):
 
 Boxes = Union[ArrayLike, Mapping[Any, Any], ArrowData]
 """Boxes in any form that `find_pairs` accepts: an array of rows, a table, a dict of columns, geometries, intervals."""
+Points = Union[ArrayLike, Mapping[Any, Any], ArrowData]
+"""Points or directions: an array of rows, or a table with the columns `x`, `y` and `z`."""
 Floats = Union[NDArray[np.float32], NDArray[np.float64]]
 """Coordinates, in single or in double precision."""
 Pairs = NDArray[Any]
@@ -113,7 +115,7 @@ def numbers(values: ArrayLike, name: str, dtype: np.dtype[Any] | None = None) ->
         return array
     if array.dtype.kind != "f":
         return array.astype(dtype)
-    with np.errstate(over="ignore", invalid="ignore"):  # what is too large for float32 becomes infinite
+    with np.errstate(all="ignore"):  # what is too large for float32 becomes infinite, and what is too small 0
         return array.astype(dtype)
 
 
@@ -125,12 +127,17 @@ def box_rows(
 ) -> Floats:
     """Corners of boxes as rows. Their number of dimensions must be `dimensions`, unless that is 0."""
     array = read_boxes(boxes, name, dimensions, None).array
-    if array.dtype.kind == "O":  # numbers of Python, which are converted as all others are
-        try:
-            array = array.astype(np.float64)
-        except OverflowError:
-            raise ValueError(f"{name} has numbers that are too large for float64") from None
+    if array.dtype.kind == "O":
+        array = _rounded(array, name)
     return numbers(array, name, dtype)
+
+
+def _rounded(array: NDArray[Any], name: str) -> NDArray[np.float64]:
+    """Numbers of Python in double precision: they are converted as all others are."""
+    try:
+        return array.astype(np.float64)
+    except OverflowError:
+        raise ValueError(f"{name} has numbers that are too large for float64") from None
 
 
 def read_boxes(boxes: Boxes, name: str, dimensions: int = 0, format: str | None = "xyxy") -> Raw:
@@ -168,15 +175,15 @@ def row(values: ArrayLike, name: str, dtype: np.dtype[Any], width: int) -> Float
     if is_named(values):
         named: Any = [values]
         return rows(named, name, dtype, width)
-    array = as_array(values, name)
+    array = _number_array(values, name)
     if array.shape != (width,):
         raise ValueError(f"{name} must be {width} numbers, not of shape {array.shape}")
     return numbers(array[None], name, dtype)
 
 
-def rows(values: ArrayLike, name: str, dtype: np.dtype[Any], width: int) -> Floats:
+def rows(values: Points, name: str, dtype: np.dtype[Any], width: int) -> Floats:
     """Points or directions as rows."""
-    array = as_array(point_rows(values, name, width), name)
+    array = _number_array(point_rows(values, name, width), name)
     if array.ndim == 1 and array.size == 0:
         array = array.reshape(0, width)
     if array.ndim != 2 or array.shape[1] != width:
@@ -186,15 +193,24 @@ def rows(values: ArrayLike, name: str, dtype: np.dtype[Any], width: int) -> Floa
 
 def each(values: ArrayLike, name: str, dtype: np.dtype[Any], count: int) -> Floats:
     """A number for each of `count`, or one for all of them."""
-    array = as_array(values, name)
+    array = _number_array(values, name)
     if array.ndim > 1 or (array.ndim == 1 and len(array) != count):
         raise ValueError(f"{name} must be a number or {count} of them, not of shape {array.shape}")
     return numbers(np.broadcast_to(array, (count,)), name, dtype)
 
 
-def one_id(id: object) -> Ids:
-    """An id as an array of one."""
-    return np.array([_id(id, 0)], np.int64)
+def _number_array(values: Any, name: str) -> NDArray[Any]:
+    """Numbers as an array. Lists may have integers that no type of NumPy has."""
+    array = as_array(values, name)
+    if array.dtype.kind == "O" and isinstance(values, (list, tuple)):
+        exact = exact_numbers(values, array)
+        return array if exact is array else _rounded(exact, name)
+    return array
+
+
+def one_id(id: object, *, or_none: bool = False) -> Ids:
+    """An id as an array of one. With `or_none`, a number that is too large for an id is -1, which is no id."""
+    return np.array([_id(id, 0, or_none)], np.int64)
 
 
 def two_ids(a: object, b: object) -> Ids:
@@ -209,8 +225,8 @@ def truth(value: object, name: str) -> bool:
     return bool(value)
 
 
-def id_array(ids: ArrayLike, name: str = "ids") -> Ids:
-    """Ids as an array."""
+def id_array(ids: ArrayLike, name: str = "ids", *, or_none: bool = False) -> Ids:
+    """Ids as an array. With `or_none`, numbers that are too large for an id are -1, which is no id."""
     array = as_array(ids, name)
     if array.ndim != 1:
         raise ValueError(f"{name} must be of shape (n,), not {array.shape}")
@@ -218,16 +234,18 @@ def id_array(ids: ArrayLike, name: str = "ids") -> Ids:
         return np.empty(0, np.int64)
     if array.dtype.kind in "fO" and isinstance(ids, (list, tuple)):
         # NumPy makes floats or objects of integers of which some are too large for int64.
-        array = np.array([_id(id, index) for index, id in enumerate(ids)], np.int64)
+        array = np.array([_id(id, index, or_none) for index, id in enumerate(ids)], np.int64)
     if array.dtype.kind not in "iu":
         raise TypeError(f"{name} must be whole numbers, not of dtype {array.dtype}")
     if array.dtype.kind == "u" and array.dtype.itemsize == 8 and (array >= 2**63).any():
+        if or_none:
+            return np.where(array < 2**63, array.astype(np.int64), -1)
         index = int(np.argmax(array >= 2**63))
         raise StaleProxyError(int(array[index]), index)
     return array.astype(np.int64, copy=False)
 
 
-def _id(id: object, index: int) -> int:
+def _id(id: object, index: int, or_none: bool = False) -> int:
     if isinstance(id, (bool, np.bool_)):
         raise TypeError(f"an id must be a whole number, not {id!r}")
     try:
@@ -235,6 +253,8 @@ def _id(id: object, index: int) -> int:
     except TypeError:
         raise TypeError(f"an id must be a whole number, not {_described(id)}") from None
     if not -(2**63) <= number < 2**63:
+        if or_none:
+            return -1
         raise StaleProxyError(number, index)
     return number
 

@@ -12,6 +12,7 @@ from ._arrays import (
     Boxes,
     Floats,
     Ids,
+    Points,
     box_rows,
     each,
     float_dtype,
@@ -25,10 +26,11 @@ from ._arrays import (
     whole,
 )
 from ._columns import as_array
-from ._errors import InvalidQueryError, StaleProxyError
+from ._errors import InvalidQueryError
 from ._filter import Filter, words
 from ._inputs import is_named
 from ._native import World
+from ._state import attributes, set_attributes
 
 
 class Changes(NamedTuple):
@@ -252,8 +254,8 @@ class BroadPhase:
     def __contains__(self, id: object) -> bool:
         """Tells whether an id names a body of this world."""
         try:
-            return bool(self._world.contains(one_id(id))[0])
-        except (StaleProxyError, TypeError):
+            return bool(self._world.contains(one_id(id, or_none=True))[0])
+        except TypeError:
             return False
 
     def contains(self, id: object) -> bool:
@@ -273,7 +275,7 @@ class BroadPhase:
         """Tells whether each of many ids names a body of this world.
 
         Args:
-            ids: `(n,)` ids.
+            ids: `(n,)` whole numbers.
 
         Returns:
             `(n,)` `bool`.
@@ -285,7 +287,7 @@ class BroadPhase:
         >>> world.contains_many(ids)
         array([False,  True])
         """
-        return self._world.contains(id_array(ids))
+        return self._world.contains(id_array(ids, or_none=True))
 
     def ids(self) -> Ids:
         """Returns the ids of all bodies, `(n,)`, sorted by slot. O(n) time."""
@@ -308,7 +310,7 @@ class BroadPhase:
         >>> wall in world
         True
         """
-        return int(self._world.insert(self._row(box, "box"), words(filter), "box")[0])
+        return int(self._world.insert(self._row(box, "box"), _given(filter), "box")[0])
 
     def insert_many(self, boxes: Boxes, filter: Filter | None = None) -> Ids:
         """Adds many bodies that share a filter.
@@ -330,7 +332,7 @@ class BroadPhase:
         >>> len(world.insert_many(np.zeros((1000, 6)))), len(world)
         (1000, 1000)
         """
-        return self._world.insert(self._rows(boxes, "boxes"), words(filter), "boxes")
+        return self._world.insert(self._rows(boxes, "boxes"), _given(filter), "boxes")
 
     def set(self, id: SupportsIndex, box: ArrayLike) -> None:
         """Sets the box of a body.
@@ -404,7 +406,7 @@ class BroadPhase:
         from_box, to_box = self._row(start, "start"), self._row(end, "end")
         self._world.set_swept(one_id(id), _double(from_box), _double(to_box), ("start", "end"))
 
-    def set_swept_many(self, ids: ArrayLike, starts: ArrayLike, ends: ArrayLike) -> None:
+    def set_swept_many(self, ids: ArrayLike, starts: Boxes, ends: Boxes) -> None:
         """Moves many fast bodies, each as `set_swept` does.
 
         Args:
@@ -820,6 +822,9 @@ class BroadPhase:
             MemoryError: if the pairs of a crowd do not fit into memory. The world and its bodies are as before. Once
                 the crowd is apart, removed or filtered, the next call reports what changed.
 
+        If the pairs were found, but then Ctrl-C came or there was no memory for the arrays, the next call returns them
+        instead of updating, and the one after it what changed since. (A copy or a snapshot made between has lost them.)
+
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
         >>> ids = world.insert_many([[0, 2], [1, 3]])
@@ -865,7 +870,8 @@ class BroadPhase:
         Takes the time of sorting the pairs, where `pairs_of` for each body takes much more.
 
         Returns:
-            a list of ids for each slot, sorted by slot. Slots without a body have empty lists.
+            a list of ids for each slot, sorted by slot. The pairs are those of the last update, so a body that was
+            removed since then still has its list. Other slots without a body have empty lists.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
@@ -964,7 +970,7 @@ class BroadPhase:
         ).ids
 
     def containing_many(
-        self, points: ArrayLike, filter: Filter | None = None, *, sorted: bool = True, exclude: ArrayLike | None = None
+        self, points: Points, filter: Filter | None = None, *, sorted: bool = True, exclude: ArrayLike | None = None
     ) -> Lists:
         """Finds the bodies whose boxes contain each of many points.
 
@@ -1029,7 +1035,7 @@ class BroadPhase:
 
     def within_many(
         self,
-        centers: ArrayLike,
+        centers: Points,
         radii: ArrayLike,
         filter: Filter | None = None,
         *,
@@ -1039,7 +1045,7 @@ class BroadPhase:
         """Finds the bodies near each of many points.
 
         Args:
-            centers: `(n, dimensions)` numbers.
+            centers: `(n, dimensions)` numbers, or a table with columns `x`, `y` and `z`.
             radii: `(n,)` numbers, or one for all.
             filter: as in `overlapping`.
             sorted: as in `overlapping`.
@@ -1071,6 +1077,8 @@ class BroadPhase:
     ) -> Neighbors:
         """Finds the `k` bodies nearest to a point, or all if there are fewer, sorted by distance and then by slot.
 
+        Distances are compared as squares in `float64`: beyond 1e154 they are infinite, and below 1e-162 they are 0.
+
         Args:
             point: `dimensions` numbers, finite.
             k: how many; 0 or more.
@@ -1095,7 +1103,7 @@ class BroadPhase:
 
     def nearest_many(
         self,
-        points: ArrayLike,
+        points: Points,
         k: int = 1,
         filter: Filter | None = None,
         *,
@@ -1103,6 +1111,8 @@ class BroadPhase:
         exclude: ArrayLike | None = None,
     ) -> Neighbors:
         """Finds the `k` bodies nearest to each of many points.
+
+        Distances are compared as squares in `float64`: beyond 1e154 they are infinite, and below 1e-162 they are 0.
 
         Args:
             points: `(n, dimensions)` numbers, or a table with columns `x`, `y` and `z`.
@@ -1196,8 +1206,8 @@ class BroadPhase:
 
     def ray_cast_many(
         self,
-        origins: ArrayLike,
-        directions: ArrayLike,
+        origins: Points,
+        directions: Points,
         limits: ArrayLike = np.inf,
         filter: Filter | None = None,
         *,
@@ -1207,8 +1217,8 @@ class BroadPhase:
         """Finds the first hit of each of many rays.
 
         Args:
-            origins: `(n, dimensions)` numbers.
-            directions: `(n, dimensions)` numbers.
+            origins: `(n, dimensions)` numbers, or a table with columns `x`, `y` and `z`.
+            directions: `(n, dimensions)` numbers, or such a table.
             limits: `(n,)` numbers, or one for all.
             filter: as in `overlapping`.
             ignore_touching: as in `box_cast`.
@@ -1305,7 +1315,7 @@ class BroadPhase:
     def box_cast_many(
         self,
         boxes: Boxes,
-        directions: ArrayLike,
+        directions: Points,
         limits: ArrayLike = np.inf,
         filter: Filter | None = None,
         *,
@@ -1316,7 +1326,7 @@ class BroadPhase:
 
         Args:
             boxes: `(n, 2 * dimensions)` numbers.
-            directions: `(n, dimensions)` numbers.
+            directions: `(n, dimensions)` numbers, or a table with columns `x`, `y` and `z`.
             limits: `(n,)` numbers, or one for all.
             filter: as in `overlapping`.
             ignore_touching: as in `box_cast`.
@@ -1365,13 +1375,12 @@ class BroadPhase:
     def __getstate__(self) -> dict[str, Any]:
         """The attributes, those of subclasses included, and a snapshot in place of the compiled part."""
         own = ("_world", "_dimensions", "_dtype")
-        attributes = {key: value for key, value in vars(self).items() if key not in own}
-        return {"snapshot": self.snapshot(), "attributes": attributes}
+        return {"snapshot": self.snapshot(), "attributes": attributes(self, own)}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Restores a copy."""
         self._restore(state["snapshot"])
-        vars(self).update(state["attributes"])
+        set_attributes(self, state["attributes"])
 
     def __repr__(self) -> str:
         """Shows the number of bodies and the arguments with which the world was created."""
@@ -1389,11 +1398,11 @@ class BroadPhase:
     def _point(self, point: ArrayLike, name: str) -> Floats:
         return row(point, name, self._dtype, self._dimensions)
 
-    def _points(self, points: ArrayLike, name: str) -> Floats:
+    def _points(self, points: Points, name: str) -> Floats:
         return rows(points, name, self._dtype, self._dimensions)
 
     def _number(self, value: object, name: str) -> Part:
-        with np.errstate(over="ignore"):
+        with np.errstate(all="ignore"):
             return Part(name, np.array([[real(value, name)]]).astype(self._dtype), "0 or more")
 
     def _ray(self, origin: ArrayLike) -> Part:
@@ -1431,7 +1440,7 @@ class BroadPhase:
         count, far = min(whole(k, "k", 0, 2**63 - 1), len(self)), real(max_distance, "max_distance")
         if not far >= 0:
             raise InvalidQueryError(0, "max_distance", far, "0 or more")
-        with np.errstate(over="ignore"):
+        with np.errstate(all="ignore"):
             far = float(self._dtype.type(far))
         part = Part(name, points, "finite")
         ids, squares, _, ends = self._ask("nearest", filter, part, k=count, max_distance=far, exclude=exclude)
@@ -1462,7 +1471,7 @@ class BroadPhase:
     def _cast_many(
         self,
         starts: Part,
-        directions: ArrayLike,
+        directions: Points,
         limits: ArrayLike,
         filter: Filter | None,
         ignore_touching: bool,
@@ -1517,14 +1526,19 @@ def _explained(index: int, parts: tuple[Part, ...]) -> InvalidQueryError:
     return InvalidQueryError(index, parts[0].name, parts[0].rows[index].tolist(), "min <= max on every axis")
 
 
+def _given(filter: Filter | None) -> tuple[int, int, int, bool]:
+    """The filter of a new body."""
+    return words(Filter() if filter is None else filter)
+
+
 def _excluded(exclude: ArrayLike | None) -> Ids:
     """The ids that a query does not find."""
     if exclude is None:
         return np.empty(0, np.int64)
     return (
-        one_id(exclude)
+        one_id(exclude, or_none=True)
         if isinstance(exclude, SupportsIndex) and np.ndim(exclude) == 0
-        else id_array(exclude, "exclude")
+        else id_array(exclude, "exclude", or_none=True)
     )
 
 

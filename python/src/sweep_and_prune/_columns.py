@@ -235,7 +235,7 @@ def arrow_array(values: Any) -> Any:
 def _of_array(array: NDArray[Any], name: str) -> Column:
     if array.ndim != 1:
         raise ValueError(f"{name} must have one value for each row, not an array of shape {array.shape}")
-    if array.dtype.kind == "O":
+    if array.dtype.kind in "OT":  # text of NumPy may have missing values, too
         return _of_objects(array.tolist())
     if array.dtype.kind in "fc":
         missing = np.isnan(array)
@@ -561,7 +561,7 @@ def in_double(array: NDArray[Any], name: str) -> NDArray[Any]:
     """Numbers of more than double precision in double precision, which must have them; others as they are."""
     if array.dtype.kind != "f" or array.dtype.itemsize <= 8:
         return array
-    with np.errstate(over="ignore", invalid="ignore"):
+    with np.errstate(all="ignore"):
         rounded = array.astype(np.float64)
         differs = np.flatnonzero((rounded != array) & (array == array))
     if len(differs):

@@ -37,8 +37,8 @@ from ._pairs import (
 from ._prepare import is_missing, refuse_inverted
 from ._progress import ProgressBar
 from ._signals import end_at_once, end_by_signals, held_back, remove_unfinished, signal_status
-from ._tables import FORMATS, READABLE, Source, Zoned, columns_of_groups, is_text, kind_of_file, read
-from ._text import GENOMIC, Cells
+from ._tables import FORMATS, READABLE, Source, Zoned, columns_of_groups, header_of, is_text, kind_of_file, read
+from ._text import Cells
 from ._writers import WRITABLE, kind_of, writer
 
 _EPILOG = f"""\b
@@ -381,6 +381,10 @@ def merge(file: str, **options: Any) -> None:
         half = merged.intervals.shape[1] // 2
         names = ["start", "end"] if half == 1 else [f"{end}{axis}" for end in ("min", "max") for axis in "xyz"[:half]]
         found = [*zip(names, merged.intervals.T), ("count", merged.counts)]
+        doubled = {name for name, _ in groups} & {name for name, _ in found}
+        if doubled and kind != "bed":  # which has no header
+            name = min(doubled)
+            raise FileError(f"--by {name}: merge writes a column of its own with this name; rename the one in the file")
         # In .bed the start and the end follow the first group.
         _write_columns(given, kind, [*groups[:1], *found, *groups[1:]] if kind == "bed" else [*groups, *found])
 
@@ -440,11 +444,9 @@ def _opened(options: Options) -> Iterator[list[Source]]:
     if options.files.count("-") > 1:
         raise FileError("standard input can be read once: pass one file by its name")
     sources = []
-    # With a file of genomics, which has no header, the option is for the other one.
-    is_for_all = all(kind_of_file(path) in GENOMIC for path in options.files)
     for path in options.files:
         with _progress("reading", options) as progress:
-            header = options.header if is_for_all or kind_of_file(path) not in GENOMIC else None
+            header = header_of(path, options.files, options.header)
             sources.append(read(path, options.from_, header, progress))
     try:
         yield sources

@@ -11,13 +11,17 @@ _ALIKE = {"OGC:CRS84", "EPSG:4326"}
 """They differ in the order of their axes only, and in files longitude comes first in both."""
 
 
-def of_geoparquet(metadata: dict[bytes, bytes] | None) -> Any:
-    """The system of a file's geometries, by the metadata of its schema; None if it is not known."""
+def of_geoparquet(metadata: dict[bytes, bytes] | None) -> tuple[str | None, Any]:
+    """The column of geometries that the metadata of a schema name, and its system; None where they say nothing."""
     geo = (metadata or {}).get(b"geo")
     if geo is None:
-        return None
-    document = json.loads(geo)
-    return document["columns"][document["primary_column"]].get("crs", LONGITUDE_LATITUDE)
+        return None, None
+    try:
+        document = json.loads(geo)
+        column: str = document["primary_column"]
+        return column, document["columns"][column].get("crs", LONGITUDE_LATITUDE)
+    except (AttributeError, KeyError, TypeError, ValueError):
+        raise ValueError('the metadata "geo" are not those of GeoParquet: write the table again') from None
 
 
 def of_geojson(document: dict[str, Any]) -> Any:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ._arrays import whole
+from ._arrays import truth, whole
 
 
 class _Fields(NamedTuple):
@@ -40,7 +40,7 @@ class Filter(_Fields):
     __slots__ = ()
 
     def __new__(cls, category: int = 1, mask: int = 0xFFFF_FFFF, group: int = 0, is_static: bool = False) -> Filter:
-        """Creates a filter. Numbers that do not fit in 32 bits are refused here, not where it is used."""
+        """Creates a filter. What its fields cannot be is refused here, not where it is used."""
         filter = super().__new__(cls, category, mask, group, is_static)
         words(filter)
         return filter
@@ -58,8 +58,6 @@ class Filter(_Fields):
 
 def words(filter: object) -> tuple[int, int, int, bool]:
     """Checks a filter and converts it to what the compiled part takes."""
-    if filter is None:
-        filter = Filter()
     if not isinstance(filter, Filter):
         raise TypeError(f"filter must be a Filter, not a {type(filter).__name__}")
     category, mask, group, is_static = filter
@@ -67,5 +65,5 @@ def words(filter: object) -> tuple[int, int, int, bool]:
         whole(category, "category", -(2**31), 2**32 - 1) & 0xFFFF_FFFF,
         whole(mask, "mask", -(2**31), 2**32 - 1) & 0xFFFF_FFFF,
         whole(group, "group", -(2**31), 2**31 - 1),
-        bool(is_static),
+        truth(is_static, "is_static"),
     )

@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _crs
 from ._columns import (
     Column,
     arrow_array,
@@ -54,8 +56,13 @@ def checked_format(format: object) -> str:
 
 
 def with_rows(values: Any) -> Any:
-    """A relation of DuckDB as a table, since each look at it runs its query; anything else as it is."""
-    if type(values).__module__.split(".")[0] != "duckdb" or not hasattr(values, "__arrow_c_stream__"):
+    """What must be looked at only once, as a table; anything else as it is.
+
+    A stream of Arrow, which has no length, is empty afterwards. Each look at a relation of DuckDB runs its query, which
+    may return the rows in another order.
+    """
+    is_relation = type(values).__module__.split(".")[0] == "duckdb"
+    if not hasattr(values, "__arrow_c_stream__") or (hasattr(values, "__len__") and not is_relation):
         return values
     import pyarrow
 
@@ -91,7 +98,7 @@ def _raw_boxes(values: Any, name: str, format: str | None) -> Raw:
     if ends is not None:
         columns = [read_column(side, name) for side in (ends.left, ends.right)]
         return Raw(*side_by_side(columns, ["left", "right"], name))
-    if hasattr(values, "collect"):  # polars' LazyFrame and its like
+    if hasattr(type(values), "collect"):  # polars' LazyFrame and its like, and no frame with a column of this name
         raise TypeError(f"{name} is a {type(values).__name__}, which has no rows yet: pass what its collect() returns")
     names = _column_names(values)
     if names is not None:
@@ -219,13 +226,11 @@ def _labels(values: Any) -> list[Any] | None:
         return list(values)
     if isinstance(values, (list, tuple)):
         return None
-    for attribute in ("column_names", "columns"):  # pyarrow; pandas, polars
-        names = getattr(values, attribute, None)
-        if names is not None and not callable(names) and hasattr(values, "__getitem__"):
-            try:
-                return list(names)
-            except TypeError:
-                return None
+    # Those of pyarrow; or of pandas and polars. (A column of pandas may have the name `column_names`.)
+    names = getattr(values, "column_names" if hasattr(type(values), "column_names") else "columns", None)
+    if names is not None and not callable(names) and hasattr(values, "__getitem__"):
+        with suppress(TypeError):
+            return list(names)
     return None
 
 
@@ -368,7 +373,11 @@ def _from_columns(values: Any, columns: list[str], name: str, format: str | None
         values = values.bounds
         if isinstance(values, np.ndarray):  # those of an array of geometries
             return Raw(values)
-    names = box_columns(columns, format) or _geometry_column(values)
+    shapes = geometry_column(_schema(values))
+    if shapes is not None:
+        refuse_sizes(format, name)
+        return Raw(bounds_of_geometries(values, shapes))
+    names = box_columns(columns, format)
     if len(names) > 1:
         raw = Raw(*side_by_side([read_column(values[column], f"column {column}") for column in names], names, name))
         if (
@@ -377,8 +386,6 @@ def _from_columns(values: Any, columns: list[str], name: str, format: str | None
             raw.array[:, [1, 3]] = np.sort(raw.array[:, [1, 3]], axis=1)
         return raw
     if names:
-        if _geometry_column(values) == names:
-            return Raw(_bounds_of_geoarrow(values, names[0]))
         nested = _from_arrow(values[names[0]], name, format)
         if nested is not None:
             return nested
@@ -397,37 +404,74 @@ def _schema(values: Any) -> Any:
     return getattr(values, "schema", None) if type(values).__module__.split(".")[0] == "pyarrow" else None
 
 
-def _geometry_column(values: Any) -> list[str]:
-    """The first column of geometries of GeoArrow, if there is one."""
-    for field in _schema(values) or []:
+def geometry_column(schema: Any) -> str | None:
+    """The column of a table of Arrow whose geometries have the boxes as their bounds; None if there is none.
+
+    Geometries count before columns that are known as boxes, as in a `GeoDataFrame`; but the column `bbox` of GeoParquet
+    has their bounds already.
+    """
+    return None if schema is None or "bbox" in schema.names else _geometry_column(schema)
+
+
+def _geometry_column(schema: Any) -> str | None:
+    """The column of geometries that GeoParquet names, or the first one of GeoArrow; None if there is none."""
+    column, _ = _crs.of_geoparquet(schema.metadata)
+    if column in schema.names:
+        return column
+    for field in schema:
         extension = (field.metadata or {}).get(b"ARROW:extension:name", b"").decode()
         if (extension or getattr(field.type, "extension_name", "")).startswith("geoarrow."):
-            return [field.name]
-    return []
+            return str(field.name)
+    return None
 
 
 def crs_of(values: Any) -> Any:
     """The coordinate reference system of geometries; None if there are none or it is not known."""
     if hasattr(type(values), "total_bounds"):
         return values.crs
-    for column in _geometry_column(values):
-        metadata = _schema(values).field(column).metadata or {}
-        return json.loads(metadata.get(b"ARROW:extension:metadata") or b"{}").get("crs")
-    return None
+    schema = _schema(values)
+    column = None if schema is None else _geometry_column(schema)
+    if column is None:
+        return None
+    named, crs = _crs.of_geoparquet(schema.metadata)
+    metadata = schema.field(column).metadata or {}
+    return crs if column == named else json.loads(metadata.get(b"ARROW:extension:metadata") or b"{}").get("crs")
 
 
-def _bounds_of_geoarrow(table: Any, column: str) -> NDArray[Any]:
+def refuse_sizes(format: str | None, name: str) -> None:
+    """Refuses boxes with sizes where the boxes are the bounds of geometries."""
+    if format not in (None, "xyxy"):
+        raise ValueError(f'{name} has geometries, whose bounds are corners: leave out format="{format}"')
+
+
+def bounds_of_geometries(table: Any, column: str) -> NDArray[Any]:
+    """The bounds of geometries in a column of a table or a batch of Arrow; NaN for those that are empty or null."""
+    is_binary = _is_binary(table.schema.field(column).type)
     try:
-        import geopandas
+        import shapely
+
+        if not is_binary:
+            import geopandas
     except ImportError:
-        raise TypeError(f"column {column} has geometries of GeoArrow, which geopandas reads: install it") from None
-    return np.asarray(geopandas.GeoDataFrame.from_arrow(table.select([column])).geometry.bounds)
+        raise TypeError(
+            f"column {column} has geometries, which geopandas reads: pip install 'sweep-and-prune[join]'"
+        ) from None
+    if not is_binary:
+        return np.asarray(geopandas.GeoDataFrame.from_arrow(table.select([column])).geometry.bounds)
+    try:
+        return np.asarray(shapely.bounds(shapely.from_wkb(np.array(table[column].to_pylist(), object))))
+    except shapely.errors.ShapelyError as error:
+        raise ValueError(f"column {column} has a geometry that is not valid: {error}") from None
+
+
+def _is_binary(kind: Any) -> bool:
+    return str(kind) in ("binary", "large_binary", "binary_view")
 
 
 def _other_way(values: Any) -> str:
     """What to do about columns that are not known in any format."""
     for field in _schema(values) or []:
-        if str(field.type) in ("binary", "large_binary", "binary_view"):
+        if _is_binary(field.type):
             return f"if column {field.name} is well-known binary (WKB), pass shapely.from_wkb(table[{field.name!r}])"
     return "rename them, or pass an array"
 
@@ -462,6 +506,6 @@ def _corners(raw: Raw, format: str | None, name: str) -> Raw:
     if array.dtype.kind != "f" or array.dtype.itemsize == 2:  # half precision would round, and overflow
         array = array.astype(np.float64)
     start, size = array[:, :half], array[:, half:]
-    with np.errstate(over="ignore", invalid="ignore"):  # what begins at -inf and is infinitely long has no end
+    with np.errstate(all="ignore"):  # what begins at -inf and is infinitely long has no end
         low = start if format == "xywh" else start - size / 2
         return Raw(np.hstack([low, low + size]), are_sized=True)

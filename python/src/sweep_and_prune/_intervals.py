@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from ._arrays import Boxes, checked_closed, read_boxes, whole
 from ._broad_phase import BroadPhase
 from ._columns import read_column
+from ._inputs import with_rows
 from ._native import nearest_of_rows
 from ._overlaps import Values, check_intervals, line_keys, plain_corners, ranks_of, rounded
 from ._pairs import Groups, Margin, find, one_set, stream, two_sets
@@ -80,6 +81,7 @@ def cluster(
     >>> sap.cluster([[0, 0, 2, 2], [5, 5, 6, 6], [1, 1, 3, 3]])
     array([0, 1, 0])
     """
+    intervals = with_rows(intervals)
     prepared = one_set(intervals, format, closed, missing, by, margin)
     labels = np.full(prepared.lengths[0], -1, np.int64)
     kept = prepared.kept[0]
@@ -179,6 +181,7 @@ def merge(
     >>> [(chromosomes[row], *ends) for row, ends in zip(merged.first, merged.intervals.tolist())]
     [('chr1', 0, 2), ('chr2', 1, 9)]
     """
+    intervals = with_rows(intervals)
     labels = cluster(intervals, format=format, closed=closed, missing=missing, by=by, margin=margin)
     corners = _corners_of(intervals, format)
     order = np.argsort(labels, kind="stable")
@@ -223,6 +226,7 @@ def coverage(
     >>> sap.coverage([[0, 10], [20, 30]], [[2, 5], [4, 6], [9, 25]])
     array([5, 5])
     """
+    a, b = with_rows(a), with_rows(b)
     prepared = two_sets(a, b, "xyxy", "both", missing, by, 0)
     _refuse_boxes(prepared, by)
     check_intervals(prepared)
@@ -304,6 +308,7 @@ def nearest(
     if how not in ("inner", "left"):
         raise ValueError(f'how must be "inner" or "left", not {how!r}')
     k = whole(k, "k", 1, 2**31 - 1)
+    a, b = with_rows(a), with_rows(b)
     is_closed = checked_closed(closed, a, b)
     corners = plain_corners({"a": a, "b": b}, format)
     half = corners[0].shape[1] // 2
@@ -516,5 +521,5 @@ def _distances(corners: list[Values], pairs: NDArray[np.int64]) -> Values:
         of_axes.append(np.where(gaps > zero, gaps, zero))  # also for infinite ends, whose difference is NaN
     if half == 1:
         return of_axes[0]
-    with np.errstate(over="ignore"):
+    with np.errstate(all="ignore"):
         return np.asarray(np.sqrt(sum(gaps.astype(np.float64) ** 2 for gaps in of_axes)))

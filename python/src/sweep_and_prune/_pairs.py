@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import atexit
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from datetime import timedelta
 from queue import Empty, Queue
-from threading import Thread, local
+from threading import Thread, get_ident, local
 from typing import Any, TypeVar, Union
 
 import numpy as np
@@ -15,6 +16,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from ._arrays import Boxes, Floats, Pairs, box_rows, float_dtype, index_dtype, thread_count, whole
 from ._native import Finder
 from ._prepare import NAME, Prepared, is_zero, prepare
+from ._state import attributes, set_attributes
 
 Margin = Union[ArrayLike, timedelta]
 """A distance: a number, one for each axis, or a `timedelta`."""
@@ -30,6 +32,11 @@ _KEPT_BYTES = 64 * 2**20
 """A thread keeps the buffers of its last search, if its boxes took at most so much memory: to get new memory from the
 system takes about as long as the search."""
 _idle = local()
+
+_exiting: list[int] = []
+"""The thread that exits, once the compiled part lets no other one go on."""
+# Called just before the compiled part stops the others, since it is registered later.
+atexit.register(lambda: _exiting.append(get_ident()))
 
 
 def find_pairs(
@@ -283,7 +290,7 @@ def for_each_chunk(
     >>> int(degrees.min()), int(degrees.max())
     (999, 999)
     """
-    prepared = one_set(boxes, format, closed, missing, by, margin)
+    prepared = one_set(boxes, format, closed, missing, by, margin, fold=True)
     return stream(prepared, each, size, dtype)
 
 
@@ -328,7 +335,7 @@ def for_each_chunk_between(
      [0 1]]
     True
     """
-    prepared = two_sets(a, b, format, closed, missing, by, margin)
+    prepared = two_sets(a, b, format, closed, missing, by, margin, fold=True)
     return stream(prepared, each, size, dtype)
 
 
@@ -351,8 +358,8 @@ def iter_chunks(
 
     Args:
         boxes: `(n, 2 * D)` numbers, or another form that `find_pairs` accepts.
-        size: the number of pairs in each chunk but the last, at most 2^24. (With `by` in three dimensions, chunks
-            may be smaller.)
+        size: the number of pairs in each chunk but the last, at most 2^24. (With `wrap`, and with `by` in three
+            dimensions, chunks may be smaller.)
         dtype: the type of the indices.
         format: `"xyxy"`, `"xywh"` or `"cxcywh"`.
         closed: `"both"`, `"left"`, `"right"` or `"neither"`.
@@ -366,6 +373,7 @@ def iter_chunks(
 
     Raises:
         InvalidBoxError, ValueError, TypeError: as `find_pairs`, at the latest with the first chunk.
+        RuntimeError: while the interpreter exits, when no other thread can search. `for_each_chunk` can.
 
     >>> import numpy as np
     >>> import sweep_and_prune as sap
@@ -626,11 +634,11 @@ class PairFinder:
 
     def __getstate__(self) -> dict[str, Any]:
         """Everything but the buffers, which a copy creates itself."""
-        return {key: value for key, value in vars(self).items() if key != "_finder"}
+        return attributes(self, ("_finder",))
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Restores a copy, with empty buffers."""
-        vars(self).update(state)
+        set_attributes(self, state)
         self._finder = self._native()
 
     def __repr__(self) -> str:
@@ -720,9 +728,11 @@ def _chunks_of_thread(stream: Callable[[_Each], object]) -> Iterator[Pairs]:
         else:
             chunks.put(None)
 
+    _refuse_at_exit()
     Thread(target=work, daemon=True).start()
     try:
         while True:
+            _refuse_at_exit()
             chunk = chunks.get()
             if isinstance(chunk, BaseException):
                 raise chunk
@@ -735,6 +745,12 @@ def _chunks_of_thread(stream: Callable[[_Each], object]) -> Iterator[Pairs]:
         with suppress(Empty):
             while True:
                 chunks.get_nowait()
+
+
+def _refuse_at_exit() -> None:
+    """Refuses to let the thread that exits wait for another one, which never goes on."""
+    if get_ident() in _exiting:
+        raise RuntimeError("no other thread can search while the interpreter exits: use for_each_chunk")
 
 
 def _chunks(each: object, size: object) -> tuple[_Each, int]:

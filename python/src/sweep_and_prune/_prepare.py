@@ -459,7 +459,7 @@ def duration(margin: object) -> NDArray[Any]:
 def _sum(ends: NDArray[Any], add: NDArray[Any]) -> NDArray[Any]:
     """Ends that are moved: rounded once in floating point, exact elsewhere."""
     if ends.dtype.kind == "f":
-        with np.errstate(over="ignore"):
+        with np.errstate(all="ignore"):
             rounded = add.astype(ends.dtype)
             if np.isinf(rounded).any():  # the sum may be finite, or still infinitely low
                 return np.asarray((ends.astype(np.float64) + add).astype(ends.dtype))
@@ -562,6 +562,7 @@ def _group_columns(by: Any, boxes: Any, name: str, count: int) -> list[Column]:
         return by  # those of a file, which have been read already
     if isinstance(by, (list, tuple)) and by and all(type(one) is str for one in by) and has_columns(boxes):
         return [named_column(boxes, one, name) for one in by]
+    by = with_rows(by)
     _refuse_another_order(by, boxes, name)
     if has_columns(by):
         return every_column(by)

@@ -21,7 +21,17 @@ from numpy.typing import NDArray
 from . import _crs
 from ._columns import Column, objects_of, read_column, side_by_side
 from ._file_error import FileError
-from ._inputs import Raw, box_columns, chosen_boxes, listed, raw_boxes, unknown_columns
+from ._inputs import (
+    Raw,
+    bounds_of_geometries,
+    box_columns,
+    chosen_boxes,
+    crs_of,
+    geometry_column,
+    listed,
+    raw_boxes,
+    unknown_columns,
+)
 from ._text import (
     GENOMIC,
     Text,
@@ -76,6 +86,8 @@ _READ_AT_ONCE = 2**22
 """This many bytes are read between two reports of progress."""
 _OF_NUMPY, _OF_ARCHIVE = b"\x93NUMPY", b"PK"
 """What an array of NumPy begins with, and several of them."""
+_OF_ARROW_FILES = (b"ARROW1", b"FEA1")
+"""What files of Arrow begin with, those that can be read from any place; streams of Arrow do not."""
 
 _File = Union[str, io.BytesIO]
 
@@ -106,8 +118,11 @@ class Source:
 
     @property
     def columns(self) -> list[str]:
-        """The names of its columns, none for an array."""
-        names = getattr(self.values, "column_names", getattr(self.values, "columns", []))
+        """The names of its columns, none for an array of numbers."""
+        if isinstance(self.values, np.ndarray):
+            names: Sequence[str] = self.values.dtype.names or ()
+        else:
+            names = getattr(self.values, "column_names", getattr(self.values, "columns", ()))
         return [*map(str, names), *self.labels]
 
     def boxes(self, columns: Sequence[str], format: str) -> Any:
@@ -155,7 +170,7 @@ class Source:
 
     @property
     def _are_boxes(self) -> bool:
-        return isinstance(self.values, (np.ndarray, Raw))
+        return isinstance(self.values, Raw) or (isinstance(self.values, np.ndarray) and not self.values.dtype.names)
 
     def box_columns(self, format: str) -> list[str]:
         """The columns that are recognized as boxes."""
@@ -195,9 +210,9 @@ class Source:
         return text.plain_numbers(name) if is_number else text.label(name)
 
     def _labels(self, name: str) -> Any:
+        values = self._column(name)
         if name not in self.labels:
-            return self._column(name)
-        values = self.labels[name]
+            return values
         is_nested = isinstance(values, np.ndarray) and any(isinstance(one, (list, dict)) for one in values.tolist())
         return objects_of([_written(one) for one in values.tolist()]) if is_nested else values
 
@@ -209,9 +224,9 @@ class Source:
             if 1 <= int(name) <= self.values.shape[1]:  # it has no header
                 return self.values[:, int(name) - 1]
             raise FileError(f"{self.name} has no column {name}; it has {self.values.shape[1]} columns")
-        if self.columns.count(name) != 1 or not hasattr(self.values, "columns"):
+        if self.columns.count(name) != 1:
             raise no_column(self.name, self.columns, name)
-        return self.values[name]
+        return self.labels[name] if name in self.labels else self.values[name]
 
     def place(self, index: int) -> str:
         """Where a row is."""
@@ -339,6 +354,12 @@ def read(
         check_memory(path, f"{size / 1e9:.1f} GB of boxes", size * _BYTES_OF_TEXT)
         with _opened_text(path, progress) as file:
             return _read_text(name, file.read(), kind, header)
+
+
+def header_of(path: str, paths: Sequence[str], header: bool | None) -> bool | None:
+    """What the option `header` says of one of these files: lines of genomics have none, so it is for the others."""
+    are_genomic = [kind_of_file(one) in GENOMIC for one in (path, *paths)]
+    return None if are_genomic[0] and not all(are_genomic) else header
 
 
 def _refuse_header(name: str, kind: str, header: bool | None) -> None:
@@ -630,7 +651,22 @@ def _read_gis(name: str, file: _File) -> Source:
         raise FileError(f"{name} has no geometries")
     shapes = frame.geometry
     others = {str(column): frame[column] for column in frame.columns if column != shapes.name}
+    others.update(_whole_columns(name, file, others))
     return _of_geometries(name, shapes.bounds.to_numpy(), others, shapes.crs)
+
+
+def _whole_columns(name: str, file: _File, columns: dict[str, Any]) -> dict[str, Any]:
+    """The columns of integers in which some are missing, exactly: pandas has them in floating point."""
+    import pyogrio
+
+    info = pyogrio.read_info(file)
+    types = dict(zip(info["fields"], info["dtypes"]))
+    names = [one for one in types if not types[one].startswith("float") and columns[one].dtype.kind == "f"]
+    if not names:
+        return {}
+    pyarrow_for(name)
+    _, table = pyogrio.read_arrow(file, columns=names, read_geometry=False)
+    return {one: table[one] for one in names}
 
 
 def _of_geometries(name: str, bounds: NDArray[Any], labels: dict[str, Any], crs: Any) -> Source:
@@ -645,13 +681,10 @@ def _read_arrow(name: str, file: _File, kind: str) -> Source:
         if kind == "arrow":
             import pyarrow.feather
 
-            try:
-                table = pyarrow.feather.read_table(file)
-            except arrow.ArrowInvalid:
-                if isinstance(file, str):
-                    raise
-                file.seek(0)  # a stream, as a pipe has
-                table = arrow.ipc.open_stream(file).read_all()
+            with open(file, "rb") if isinstance(file, str) else file as opened:
+                is_stream = not opened.read(8).startswith(_OF_ARROW_FILES)  # such as those that this program writes
+                opened.seek(0)
+                table = arrow.ipc.open_stream(opened).read_all() if is_stream else pyarrow.feather.read_table(opened)
         else:
             import pyarrow.parquet
 
@@ -666,36 +699,17 @@ def _read_arrow(name: str, file: _File, kind: str) -> Source:
 
 def source_of_table(name: str, table: Any) -> Source:
     """The boxes of a table of Arrow, with what its metadata say about geometries."""
-    arrow = pyarrow_for(name)
-    geo = (table.schema.metadata or {}).get(b"geo")
-    crs = _crs.of_geoparquet(table.schema.metadata)
-    if geo is not None and "bbox" not in table.column_names:
-        try:
-            import geopandas
-        except ImportError:
-            raise FileError(f"{name} has geometries: pip install 'sweep-and-prune[join]'") from None
-        column = json.loads(geo)["primary_column"]
+    column = geometry_column(table.schema)
+    if column is not None:
         others = {one: table[one] for one in table.column_names if one != column}
-        if arrow.types.is_binary(table[column].type) and b"ARROW:extension:name" not in (
-            table.schema.field(column).metadata or {}
-        ):
-            # A plain file, such as those of DuckDB, says in `geo` alone that this is well-known binary.
-            return _of_geometries(name, _bounds_of_binary(name, table[column]), others, crs)
-        shapes = geopandas.GeoDataFrame.from_arrow(table.select([column])).geometry
-        return _of_geometries(name, shapes.bounds.to_numpy(), others, crs)
+        try:
+            bounds = bounds_of_geometries(table, column)
+        except (TypeError, ValueError) as error:
+            raise FileError(f"{name}: {error}") from None
+        return _of_geometries(name, bounds, others, crs_of(table))
     source = Source(name, table)
-    source.crs = crs
+    source.crs = crs_of(table)
     return source
-
-
-def _bounds_of_binary(path: str, column: Any) -> NDArray[Any]:
-    import shapely
-
-    values = np.array(column.to_pylist(), object)
-    try:
-        return np.asarray(shapely.bounds(shapely.from_wkb(values)))
-    except shapely.errors.ShapelyError as error:
-        raise FileError(f"{path} has a geometry that is not valid: {error}") from None
 
 
 def columns_of_groups(sources: list[Source], by: Sequence[Sequence[str]]) -> list[list[Column]]:

@@ -24,7 +24,9 @@ def checked_wrap(wrap: object) -> float:
 
 def precise_enough(boxes: Floats, wrap: float) -> Floats:
     """Boxes in a precision that holds half of the circle exactly."""
-    return boxes if float(boxes.dtype.type(wrap)) == wrap else boxes.astype(np.float64)
+    with np.errstate(all="ignore"):  # what is too large for float32 becomes infinite, and what is too small 0
+        is_exact = float(boxes.dtype.type(wrap)) == wrap
+    return boxes if is_exact else boxes.astype(np.float64)
 
 
 def without_crossings(boxes: NDArray[Any]) -> NDArray[Any]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import glob
-import json
 import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -16,7 +15,15 @@ from .. import _crs
 from .._arrays import read_boxes
 from .._columns import is_missing_value, is_rounded, read_column, side_by_side
 from .._errors import InvalidBoxError
-from .._inputs import Raw, box_columns, listed, unknown_columns
+from .._inputs import (
+    Raw,
+    bounds_of_geometries,
+    box_columns,
+    geometry_column,
+    listed,
+    refuse_sizes,
+    unknown_columns,
+)
 from .._prepare import prepare, refuse_inverted
 from .._tables import is_text
 from .dataset import DatasetError
@@ -83,7 +90,7 @@ class Form(NamedTuple):
 
     def names(self) -> list[str]:
         """All columns that are needed."""
-        return self.columns + ([self.ids] if self.ids is not None and self.ids not in self.columns else [])
+        return list(dict.fromkeys([*self.columns, *([] if self.ids is None else [self.ids])]))
 
     def read(self, table: Any, place: str, first_row: int, first_index: int, argument: str) -> Boxes:
         """The valid boxes of a table or an array, with their ids.
@@ -99,11 +106,8 @@ class Form(NamedTuple):
             array = self.raw(table, argument).array
         except TypeError as error:
             raise DatasetError(f"{place}: {error}") from None
-        if array.dtype.kind in "iuO":
-            if array.dtype.kind == "O" or is_rounded(array):
-                raise DatasetError(
-                    f"{place}: coordinates beyond 2^53 are not exact as float64; subtract an offset first"
-                )
+        refuse_rounded(array, place)
+        if array.dtype.kind in "iu":
             array = array.astype(np.float64)
         if array.dtype.kind != "f":
             raise DatasetError(f"{place}: coordinates must be numbers, not of type {array.dtype}; convert the columns")
@@ -135,17 +139,25 @@ class Form(NamedTuple):
             values: Any = Raw(*side_by_side(columns, self.columns, argument))
         elif self.kind == "nested":
             values = table[self.columns[0]]
+        elif self.kind == "geometry" and hasattr(type(table), "total_bounds"):  # a GeoDataFrame
+            values = table[self.columns[0]]
         elif self.kind == "geometry":
-            import shapely
-
-            shapes = table[self.columns[0]]
-            shapes = (
-                shapely.from_wkb(np.asarray(shapes, object)) if not hasattr(shapes, "bounds") else np.asarray(shapes)
-            )
-            values = np.asarray(shapely.bounds(shapes), np.float64).reshape(-1, 4)
+            values = Raw(bounds_of_geometries(table, self.columns[0]))
         else:
             values = table
         return read_boxes(values, argument, 0, self.format)
+
+    def in_precision_of(self, *empty: Any) -> Form:
+        """The same, in the precision in which boxes of tables like these, without rows, are compared in memory."""
+        return self._replace(dtype="float32" if all(map(self._is_single, empty)) else "float64")
+
+    def _is_single(self, empty: Any) -> bool:
+        if self.kind == "geometry":
+            return False
+        try:
+            return self.raw(empty, "boxes").array.dtype == np.float32
+        except (TypeError, ValueError):  # also a column of objects, which may have lists; reading rows tells
+            return False
 
     def ids_of(self, table: Any, place: str, first_row: int) -> NDArray[Any]:
         """The ids of the rows of a table."""
@@ -158,6 +170,15 @@ class Form(NamedTuple):
         if self.id_type == "large_string":
             return ids.astype(object)
         return ids.astype(self.id_type, copy=False)
+
+
+def refuse_rounded(array: NDArray[Any], place: str) -> None:
+    """Refuses coordinates that are not exact in double precision."""
+    are_objects = array.dtype.kind == "O"
+    if are_objects and not set(map(type, array.ravel().tolist())) <= {int, float}:
+        raise DatasetError(f"{place}: coordinates are decimals that float64 does not have: convert the columns")
+    if are_objects or is_rounded(array):
+        raise DatasetError(f"{place}: coordinates beyond 2^53 are not exact as float64; subtract an offset first")
 
 
 class File(NamedTuple):
@@ -274,6 +295,14 @@ def _first_line(error: BaseException) -> str:
     return str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
 
 
+def recognized(schema: Any, format: str) -> tuple[str, list[str]]:
+    """What is read if no columns are chosen, and its columns: geometries, or else those that are known as boxes."""
+    geometry = geometry_column(schema)
+    if geometry is None:
+        return "recognized", box_columns(schema.names, format)
+    return "geometry", [geometry]
+
+
 def form_of_files(
     files: Sequence[File],
     columns: Sequence[str] | None,
@@ -286,8 +315,6 @@ def form_of_files(
     Raises:
         DatasetError: if a file has no such columns; so for those that `by` names, too.
     """
-    import pyarrow
-
     schemas = []
     for file in files:
         with opened(file.path) as parquet:
@@ -295,10 +322,9 @@ def form_of_files(
     schema = schemas[0]
     kind, names = "chosen", list(columns or [])
     if not names:
-        kind, names = "recognized", box_columns(schema.names, options["format"])
-        geo = (schema.metadata or {}).get(b"geo")
-        if geo is not None and names in ([], ["bbox"]) and "bbox" not in schema.names:
-            kind, names = "geometry", [json.loads(geo)["primary_column"]]
+        kind, names = recognized(schema, options["format"])
+    if kind == "geometry":
+        refuse_sizes(options["format"], files[0].path)
     if not names:
         raise DatasetError(
             f"{files[0].path} has no columns that are known as boxes: "
@@ -307,7 +333,6 @@ def form_of_files(
     if len(names) not in (1, 2, 4, 6):
         raise ValueError(f"columns are {len(names)} names; they must be 2, 4 or 6: min corner and then max corner")
     kind = "nested" if len(names) == 1 and kind != "geometry" else kind
-    is_single = kind != "geometry"
     id_types = set()
     for file, other in zip(files, schemas):
         for name in [*names, *([ids] if ids is not None else []), *by]:
@@ -315,10 +340,6 @@ def form_of_files(
             if number != 1:
                 fault = f"{number} columns {name!r}: rename all but one" if number else f"no column {name!r}"
                 raise DatasetError(f"{file.path} has {fault}; {listed(other.names)}")
-        for name in names:
-            of_name = other.field(name).type
-            parts = [field.type for field in of_name] if pyarrow.types.is_struct(of_name) else [of_name]
-            is_single &= all(part == pyarrow.float32() for part in parts)
         if ids is not None:
             id_types.add(id_type_of(other.field(ids).type, f"{file.path}: column {ids}"))
     if len(id_types) > 1:
@@ -328,10 +349,11 @@ def form_of_files(
         kind=kind,
         ids=ids,
         id_type=id_types.pop() if id_types else "int64",
-        dtype="float32" if is_single else "float64",
+        dtype="float64",
         **options,
     )
-    return form, _crs_of(files, [_crs.of_geoparquet(one.metadata) for one in schemas])
+    form = form.in_precision_of(*(one.empty_table().select(form.names()) for one in schemas))
+    return form, _crs_of(files, [_crs.of_geoparquet(one.metadata)[1] for one in schemas])
 
 
 def _crs_of(files: Sequence[File], systems: list[Any]) -> Any:

@@ -54,12 +54,13 @@ def source_of_collection(
 def _form_of_frame(meta: Any, columns: Any, ids: str | None, options: dict[str, Any]) -> Form:
     import pyarrow
 
-    from .._inputs import box_columns, listed, unknown_columns
+    from .._inputs import box_columns, listed, refuse_sizes, unknown_columns
 
     names = [str(name) for name in meta.columns]
     kind, chosen = "chosen", list(columns or [])
     if not chosen and hasattr(meta, "total_bounds"):
         kind, chosen = "geometry", [meta.geometry.name]
+        refuse_sizes(options["format"], "boxes")
     elif not chosen:
         kind, chosen = "recognized", box_columns(names, options["format"])
     if not chosen:
@@ -70,7 +71,6 @@ def _form_of_frame(meta: Any, columns: Any, ids: str | None, options: dict[str, 
     for name in chosen + ([ids] if ids is not None else []):
         if name not in names:
             raise DatasetError(f"boxes has no column {name!r}; {listed(names)}")
-    is_single = kind != "geometry" and all(meta[name].dtype == np.float32 for name in chosen)
     id_type = "int64"
     if ids is not None:
         schema = pyarrow.Schema.from_pandas(meta[[ids]], preserve_index=False)
@@ -78,7 +78,7 @@ def _form_of_frame(meta: Any, columns: Any, ids: str | None, options: dict[str, 
         # A column of objects has no type while it is empty.
         is_object = pyarrow.types.is_null(kind_of_ids)
         id_type = "large_string" if is_object else id_type_of(kind_of_ids, f"column {ids}")
-    return Form(chosen, kind, ids, id_type, "float32" if is_single else "float64", **options)
+    return Form(chosen, kind, ids, id_type, "float64", **options).in_precision_of(meta)
 
 
 def _summary(table: Any, form: Form, name: str, digested: Form | None) -> tuple[int, Floats, str]:

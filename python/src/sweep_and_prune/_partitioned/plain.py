@@ -21,15 +21,15 @@ from numpy.typing import NDArray
 
 from .. import _crs
 from .._arrays import Floats, read_boxes
-from .._columns import EXACT, group_codes, in_one_unit, is_rounded
+from .._columns import EXACT, group_codes, in_one_unit
 from .._errors import InvalidBoxError
 from .._file_error import FileError
-from .._inputs import Raw, box_columns
+from .._inputs import Raw
 from .._prepare import duration, is_missing, kind_of_boxes, prepare, refuse_inverted
 from .._tables import Source as Table
-from .._tables import columns_of_groups, is_text, kind_of_file, read_parts
+from .._tables import columns_of_groups, header_of, is_text, kind_of_file, read_parts
 from .._text import GENOMIC, Text
-from .boxes import File, Form, InvalidRowError, form_of_files, opened
+from .boxes import File, Form, InvalidRowError, form_of_files, opened, recognized, refuse_rounded
 from .dataset import DatasetError
 from .files import PART, part_of, read_sealed, write_sealed
 from .folder import LOCK, locked
@@ -165,11 +165,15 @@ def _decoded(table: Any, by: list[str]) -> Any:
     for name in dict.fromkeys(by):
         column = table[name]
         if pyarrow.types.is_dictionary(column.type):
-            at = table.column_names.index(name)
             column = pyarrow.chunked_array(
                 [chunk.dictionary_decode() for chunk in column.chunks], column.type.value_type
             )
-            table = table.set_column(at, name, column)
+        kind = str(column.type)  # Arrow cannot take rows of some types, nor find their different values
+        if kind in ("string_view", "binary_view"):
+            column = column.cast(f"large_{kind.removesuffix('_view')}")
+        elif kind.startswith(("decimal32", "decimal64")):
+            column = column.cast(pyarrow.decimal128(column.type.precision, column.type.scale))
+        table = table.set_column(table.column_names.index(name), name, column)
         if pyarrow.types.is_nested(column.type):
             raise DatasetError(f"column {name} has values of type {column.type}; groups must be numbers, text or times")
     return table
@@ -184,7 +188,7 @@ def is_plain(wanted: Sequence[Wanted], options: Options) -> bool:
     for one in wanted:
         with opened(one.files[0].path) as parquet:
             schema = parquet.schema_arrow
-        names = one.columns or box_columns(schema.names, options.format)
+        names = one.columns or recognized(schema, options.format)[1]
         types = [kind for known, kind in zip(schema.names, schema.types) if known in names]
         if any(map(pyarrow.types.is_temporal, types)):
             return False
@@ -309,7 +313,7 @@ class _Types:
             counts = array.view(np.int64)[~np.isnat(array)]
             low, high = self._ranges.get(unit, (2**63, -(2**63)))
             self._ranges[unit] = min(low, int(counts.min())), max(high, int(counts.max()))
-        self._is_double |= array.dtype.kind != "f" or array.dtype.itemsize > 4
+        self._is_double |= array.dtype.kind != "f" or array.dtype.itemsize != 4
 
     def dtype(self) -> str:
         """The precision in which boxes are compared."""
@@ -346,7 +350,11 @@ def plain_boxes(
     """
     with ExitStack() as stack:
         try:
-            sets = [_Set(one, options) for one in wanted]
+            paths = [file.path for one in wanted for file in one.files]
+            sets = [
+                _Set(one, options._replace(header=header_of(one.files[0].path, paths, options.header)))
+                for one in wanted
+            ]
             _check(sets)
             key = _key(wanted, options)
             _refuse_others(folder)
@@ -523,10 +531,8 @@ def _plain(
         if clock is not None:
             unit, origin, margin = clock
             array = _counted(array, unit, origin)
-        elif array.dtype.kind == "O" or is_rounded(array):
-            raise DatasetError(
-                f"{part.place}: coordinates beyond 2^53 are not exact as float64; subtract an offset first"
-            )
+        else:
+            refuse_rounded(array, part.place)
         prepared = prepare({one.wanted.argument: array.astype(dtype)}, "xyxy", one.closed, "raise", None, margin)
     except InvalidBoxError as error:
         row, line = part.row + error.index, None
