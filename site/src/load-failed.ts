@@ -6,7 +6,15 @@ export function showLoadFailure(place: HTMLElement, error: unknown): void {
     ? "This needs WebAssembly, which this browser does not have, or which is switched off."
     : `A file of this page did not load (${messageOf(error)}). Is there a connection?`;
   const retry = Object.assign(document.createElement("button"), { type: "button", textContent: "Try again" });
-  retry.addEventListener("click", () => location.reload());
+  retry.addEventListener("click", async () => {
+    try {
+      // After a new build, the service worker would answer with the old page, whose files are no longer there.
+      await (await navigator.serviceWorker.getRegistration())?.unregister();
+    } catch {
+      // Forbidden here, or no secure connection: then there is none.
+    }
+    location.reload();
+  });
   const says = Object.assign(document.createElement("span"), { textContent: `${why} ` });
   place.replaceChildren(says, retry);
   place.classList.add("load-failure");

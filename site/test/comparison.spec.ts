@@ -131,6 +131,20 @@ test("a ball dragged in one moves in all; the bars are the totals of the last fi
   expect(finished.shown[1]).toBeLessThan(45);
 });
 
+test("a world in which a ball was dragged is shared as it is, the same for all methods", async ({ page }) => {
+  const comparison = await open(page, "d6");
+  await button(comparison, "Pause").click();
+  await comparison.locator("sap-demo").first().locator(".picture").focus();
+  for (const key of ["b", "Shift+ArrowRight"]) await page.keyboard.press(key);
+  await button(comparison, "Share or embed").click();
+  const url = await comparison.getByLabel("Link to this demo").inputValue();
+  await page.goto("about:blank");
+  await page.goto(url);
+  const shared = page.locator("sap-comparison");
+  await expect.poll(async () => (await statesOf(shared).catch(() => [])).length).toBe(2);
+  await expect.poll(async () => new Set((await statesOf(shared)).map(({ tick, hash }) => `${tick} ${hash}`)).size).toBe(1);
+});
+
 test("what is shared shows all methods again", async ({ page }) => {
   const comparison = await open(page, "d13");
   await button(comparison, "Share or embed").click();

@@ -214,6 +214,27 @@ test("what is shared paused opens paused, at the same stop", async ({ page }) =>
   }
 });
 
+test("what is shared with balls at the walls can be opened", async ({ page }) => {
+  // Rounded, these would end outside: the first in numbers of any precision, the others of single or of double precision only.
+  const demo = await open(page, { balls: "[[300,150,20.045],[150,300,32.08],[450,300,32.09],[300,200,200]]", static: "", draggable: "" });
+  await demo.locator(".picture").focus();
+  for (const [key, times] of [["ArrowRight", 12], ["ArrowDown", 4], ["ArrowDown", 4]] as const) {
+    await page.keyboard.press("b");
+    for (let press = 0; press < times; press++) await page.keyboard.press(`Shift+${key}`);
+  }
+  const balls = (): Promise<number[][]> => demo.evaluate((element: SapDemo) => element.balls.map((row) => row.map(Number)));
+  const before = await balls();
+  expect(before[0]![0]).toBeCloseTo(600 - 20.045, 3);
+  const url = await demo.evaluate((element: SapDemo) => element.share());
+  await page.goto("about:blank");
+  await page.goto(url);
+  await demo.evaluate((element: SapDemo) => element.ready);
+  await expect(demo.getByRole("alert")).toHaveCount(0);
+  const after = await balls();
+  expect(after).toHaveLength(before.length);
+  for (const [ball, row] of after.entries()) for (const [at, value] of row.entries()) expect(Math.abs(value - before[ball]![at]!)).toBeLessThan(0.02);
+});
+
 test("what is shared opens as it was", async ({ page }) => {
   const demo = await open(page, { strategy: "swap", balls: "7", seed: "42", decorations: "checks:#4c8", paused: "" });
   await demo.evaluate((element: SapDemo) => {

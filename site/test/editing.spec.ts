@@ -1,5 +1,6 @@
 // A listing of the article is changed by the reader, and its demo runs it.
 import { expect, type Locator, type Page, test } from "@playwright/test";
+import { withLines } from "../src/edit/lines.ts";
 import { Demo } from "./support/demo.ts";
 import { complaints } from "./support/pages.ts";
 
@@ -25,6 +26,19 @@ async function edit(page: Page, id: string, name: string): Promise<{ demo: Demo;
 }
 
 test.use({ contextOptions: { reducedMotion: "reduce" } });
+
+test("the number of a line is told before calls alone: not before methods, nor where a function is defined", () => {
+  const said = "if ($line(1, overlaps)(a, b)) $line(1, onPair)(a, b);\n\n$line(3, precedes)(p, q)";
+  expect(withLines("if (overlaps(a, b)) onPair(a, b);\n\nprecedes(p, q)")).toBe(said);
+  for (const code of [
+    "rows[i].overlaps(b)", "this.#overlaps(b)", "a?.overlaps(b)", "onOverlap(a, b)",
+    "class Row {\n  overlaps(b) {\n  }\n  #precedes(b) { }\n}", "const row = { onPair(a, b) { } };", "export function precedes(p, q) {", "function overlaps(\n  a,\n  b,\n) {",
+  ]) {
+    expect(withLines(code)).toBe(code);
+  }
+  // A line before may end without a semicolon.
+  expect(() => new Function("$line", "overlaps", `const a = [1]\n${withLines("overlaps(a)")}`)((_: number, report: unknown) => report, () => true)).not.toThrow();
+});
 
 test("the editor is not loaded before it is asked for", async ({ page }) => {
   const scripts: string[] = [];
@@ -127,6 +141,8 @@ test("errors are shown at their line; a loop that never ends is stopped; the dem
   // Not only loops that can be counted: here the engine itself does not come back.
   await type(original.replace("for (let i = 0;", '/(a+)+$/.test("a".repeat(40) + "b");\n  for (let i = 0;'));
   await expect(said).toHaveText("Ended after 2 seconds: does a loop never end?");
+  await type(original.replace("const a = boxes[i];", "const a = boxes[i]; onPair({ id: () => i }, a);"));
+  await expect(said).toContainText("could not be cloned");
   await type("export function mine() {}");
   await expect(said).toHaveText("The demo calls sortedPairwise(), and there is no such function any more.");
   await listing.getByRole("button", { name: "Original code" }).click();

@@ -68,6 +68,15 @@ test("the same seed gives the same balls, another seed others, and an address le
   expect(JSON.stringify((await other.world()).boxes)).not.toBe(first);
 });
 
+test("balls have the color of the height at which they started, also where an address leads to a later step", async ({ page }) => {
+  const picture = page.getByRole("img", { name: "Discs falling into a box" });
+  const { step } = await open(page, "&boxes=30");
+  await step(20);
+  const stepped = await picture.screenshot();
+  await open(page, "&boxes=30&step=20");
+  await expect.poll(async () => stepped.equals(await picture.screenshot())).toBe(true);
+});
+
 test("the motion of the balls is loaded for their scene alone, and three.js for spheres, which keys turn; another scene shows boxes again", async ({ page }) => {
   const scripts: string[] = [];
   page.on("response", (response) => void scripts.push(response.url()));

@@ -90,18 +90,18 @@ test("d17: swaps are counted since the drag began, flashed, and told as overlaps
   await page.clock.runFor(50);
   expect(await flashes()).toBe(true);
   // Its right endpoint goes from 170 to 330: past the left ones of B (215) and C (285), and the right one of B (285).
-  await expect(log).toContainText("Since the drag began: 3 swaps, 2 overlaps begun, 0 ended.");
-  await expect(log.locator("li")).toHaveText(["A begins to overlap C", "A begins to overlap B"]);
+  await expect(log).toContainText("Since the drag began: 3 swaps, 2 overlaps on one axis begun, 0 ended.");
+  await expect(log.locator("li")).toHaveText(["A begins to overlap C on x", "A begins to overlap B on x"]);
   await page.clock.runFor(2000);
   expect(await flashes(), "only for a moment").toBe(false);
   await demo.drag(0, -160);
-  await expect(log).toContainText("Since the drag began: 3 swaps, 0 overlaps begun, 2 ended.");
-  await expect(log.locator("li")).toHaveText(["A ceases to overlap B", "A ceases to overlap C"]);
+  await expect(log).toContainText("Since the drag began: 3 swaps, 0 overlaps on one axis begun, 2 ended.");
+  await expect(log.locator("li")).toHaveText(["A ceases to overlap B on x", "A ceases to overlap C on x"]);
   // By keys: four times 25 to the right is past the left endpoint of B.
   await demo.root.locator(".picture").focus();
   await page.keyboard.press("b");
   for (let press = 0; press < 4; press++) await page.keyboard.press("Shift+ArrowRight");
-  await expect(log).toContainText("1 swap, 1 overlap begun, 0 ended.");
+  await expect(log).toContainText("1 swap, 1 overlap on one axis begun, 0 ended.");
 });
 
 test("d5 and d16 can be guessed: what is right is what is drawn, and a wrong guess is explained", async ({ page }) => {
@@ -250,7 +250,7 @@ test("d14 in play: the sentence is of the comparison or swap that is highlighted
   expect(new Set(seen.map(({ text }) => text)).size).toBeGreaterThan(3);
   for (const { kind, names, text } of seen) {
     for (const name of names) expect(text, `${kind} of ${names.join(" and ")}`).toMatch(new RegExp(`\\(${name}|${name}\\)`));
-    expect(text.startsWith(kind === "swap" ? "Swap" : "Compare") || text.includes("is the pivot"), text).toBe(true);
+    expect(text.startsWith(kind === "swap" ? "Swap" : "Compare") || text.endsWith("is the pivot itself: the scan stops here."), text).toBe(true);
     expect(text).not.toMatch(/Compare (\S+) with \1\./);
   }
 });

@@ -21,6 +21,28 @@ for (const [path, place] of Object.entries(PLACES)) {
   });
 }
 
+test.describe("with a service worker", () => {
+  test.use({ serviceWorkers: "allow" });
+
+  test("a page of an older build, whose files are no longer there, is not loaded again", async ({ page }) => {
+    await page.goto("/playground.html");
+    await expect(page.locator("html")).toHaveAttribute("data-stored", "");
+    await expect(page.locator("box-playground")).toHaveAttribute("data-step", /./);
+    // The next visit has this file no more.
+    const file = await page.evaluate(async () => {
+      const [name] = await caches.keys();
+      const cache = await caches.open(name!);
+      const url = (await cache.keys()).map(({ url }) => url).find((url) => /\/experiment[^/]*\.wasm/.test(url))!;
+      await cache.put(url, new Response("", { status: 404 }));
+      return url;
+    });
+    await page.goto("/playground.html");
+    await expect(page.locator(PLACES["/playground.html"])).toContainText("A file of this page did not load", { timeout: 20_000 });
+    await page.getByRole("button", { name: "Try again" }).click();
+    await expect(page.locator("box-playground"), file).toHaveAttribute("data-step", /./);
+  });
+});
+
 test("a demo that did not load says so without advice for its makers, and comes when it is tried again", async ({ page }) => {
   await page.route(/simulation[^/]*\.wasm/, (route) => route.abort());
   await page.goto("/#d2");

@@ -3,6 +3,20 @@ import { PAGES } from "./support/pages.ts";
 
 test.use({ serviceWorkers: "allow" });
 
+test("the playground opens without a network after one visit", async ({ page, context }) => {
+  const playground = page.locator("box-playground");
+  await page.goto("/playground.html?scene=falling+balls&boxes=50");
+  await expect(page.locator("html")).toHaveAttribute("data-stored", "");
+  await expect(playground).toHaveAttribute("data-step", /./);
+  // What its thread has loaded is stored as well.
+  const stored = (): Promise<string[]> =>
+    page.evaluate(async () => (await Promise.all((await caches.keys()).map(async (name) => (await (await caches.open(name)).keys()).map(({ url }) => url)))).flat());
+  await expect.poll(async () => (await stored()).filter((url) => /\/(experiment|simulation)[^/]*\.simd[^/]*\.wasm/.test(url)).length).toBe(2);
+  await context.setOffline(true);
+  await page.reload();
+  await expect(playground).toHaveAttribute("data-step", /./);
+});
+
 test("a page that was visited opens without a network; a first visit stores the article alone", async ({ page, context }) => {
   test.slow(); // every page twice
   const failed: string[] = [];

@@ -319,6 +319,19 @@ test.describe("paused", () => {
     expect(pairs).toBeGreaterThan(0);
   });
 
+  test("an address that would not lead back is refused, with the reason", async ({ page }) => {
+    const playground = await new Playground(page).open("?boxes=2&step=10000");
+    await playground.step();
+    await playground.part("share").click();
+    await expect(playground.part("exported")).toContainText("an address leads to step 10,000 at most");
+    const json = JSON.parse(await playground.download("json"));
+    expect([json.step, json.address]).toEqual([10_001, undefined]);
+    await playground.root.getByRole("button", { name: "Clear" }).click();
+    await expect(playground.part("status")).toContainText("0 boxes of your own");
+    await playground.part("share").click();
+    await expect(playground.part("exported")).toContainText("there are no boxes to share");
+  });
+
   test("JSON says everything", async ({ page }) => {
     const playground = await new Playground(page).open("?boxes=200&scene=tiny&seed=9");
     const json = JSON.parse(await playground.download("json"));

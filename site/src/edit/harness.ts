@@ -175,7 +175,7 @@ export function programOf(name: string, compile: Compile): DemoProgram {
   let recorder = new Recorder();
   const listing = compile({
     ...helpers,
-    $line: (line: number) => (recorder.line = line),
+    $line: <F>(line: number, report: F): F => ((recorder.line = line), report),
     overlaps: (a: Box, b: Box): boolean => {
       recorder.test(a, b);
       return overlaps(a, b);

@@ -26,13 +26,12 @@ function answer(question: Question): readonly ProgramEvent[] | Verdict {
 
 addEventListener("message", ({ ports: [port] }) => {
   port!.onmessage = ({ data }: MessageEvent<Question>) => {
-    let said: Answer;
+    const say = (said: Answer): void => port!.postMessage(said);
     try {
-      said = { value: answer(data) };
+      say({ value: answer(data) });
     } catch (error) {
-      said = { fault: faultOf(error) };
+      say({ fault: faultOf(error) });
     }
-    port!.postMessage(said);
   };
   port!.postMessage("ready");
 });

@@ -25,6 +25,8 @@ export const loadSimulation = (): Promise<unknown> => (loaded ??= Simulation.loa
 export class Falling {
   readonly #simulation: Simulation;
   readonly #dimensions: number;
+  /** At which the balls start. */
+  readonly #heights: Float32Array;
   #isNew = true;
   /** Milliseconds that the last step took. */
   #ms = 0;
@@ -33,6 +35,7 @@ export class Falling {
     this.#dimensions = dimensions;
     const gravity = GRAVITIES[motion] ?? 9.81;
     this.#simulation = new Simulation({ scene: "falling", dimensions, bodies: boxes, size: size * radiusOf(boxes, dimensions), spread: Math.min(spread, 100), seed, gravity, counting: false });
+    this.#heights = this.#simulation.positions.filter((_, at) => at % dimensions === 1);
   }
 
   advance(): void {
@@ -55,7 +58,7 @@ export class Falling {
   /** What is drawn: where the balls are, and at first also in which world. */
   get balls(): Balls {
     const { positions, radii, bounds } = this.#simulation;
-    const world = this.#isNew ? { ...bounds, radii: radii.slice() } : undefined;
+    const world = this.#isNew ? { ...bounds, radii: radii.slice(), heights: this.#heights } : undefined;
     this.#isNew = false;
     return { positions: positions.slice(), world, ms: this.#ms };
   }

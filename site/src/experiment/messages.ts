@@ -27,8 +27,8 @@ export interface Balls {
   readonly positions: Float32Array;
   /** Milliseconds that their motion took. */
   readonly ms: number;
-  /** The box that they are in, and how large they are: with the first frame of a run. */
-  readonly world?: { readonly min: readonly number[]; readonly max: readonly number[]; readonly radii: Float32Array } | undefined;
+  /** The box that they are in, how large they are, and the heights at which they started, by which they are painted: with the first frame of a run. */
+  readonly world?: { readonly min: readonly number[]; readonly max: readonly number[]; readonly radii: Float32Array; readonly heights: Float32Array } | undefined;
 }
 
 export interface ExperimentFrame {
@@ -45,6 +45,8 @@ export interface ExperimentFrame {
 
 export type FromExperiment =
   | { readonly type: "ready"; readonly lists: Lists }
+  /** The addresses of files that the thread has loaded: the page cannot see them itself. */
+  | { readonly type: "loaded"; readonly files: readonly string[] }
   /** Why this world is too much. */
   | { readonly type: "refused"; readonly run: number; readonly reason: string }
   | ExperimentFrame

@@ -172,6 +172,8 @@ function fail(error: unknown): void {
   send({ type: "failed", message: messageOf(error) });
 }
 
+new PerformanceObserver((list) => send({ type: "loaded", files: list.getEntries().map(({ name }) => name) })).observe({ type: "resource", buffered: true });
+
 // Messages that come before the experiment is there wait for it, in their order.
 let queue: Promise<Experiment> = Experiment.load().then(
   (experiment) => {

@@ -39,12 +39,10 @@ export class BallsPicture {
   }
 
   #begin(): void {
-    const { world, positions } = this.#last ?? {};
-    if (!world || !positions || !this.#view) return;
+    const { world } = this.#last ?? {};
+    if (!world || !this.#view) return;
     const [floor = 0, ceiling = 1] = [world.min[1], world.max[1]];
-    // Painted by the height at which they start.
-    const tints = world.radii.map((_, body) => ((positions[this.#dimensions * body + 1] ?? 0) - floor) / (ceiling - floor));
-    this.#view.begin(world, world.radii, tints);
+    this.#view.begin(world, world.radii, world.heights.map((height) => (height - floor) / (ceiling - floor)));
     this.resize();
   }
 

@@ -11,6 +11,7 @@ import { whenNear } from "../panel/awake.ts";
 import { PanelElement } from "../panel/panel-element.ts";
 import { LARGEST_SEED } from "../panel/parts.ts";
 import { drawLines } from "../plot/line-plot.ts";
+import { keep } from "../shell/shell.ts";
 import { onThemeChange } from "../shell/theme.ts";
 import { colorOf } from "../view/theme.ts";
 import { BallsPicture } from "./balls.ts";
@@ -336,7 +337,9 @@ export class BoxPlayground extends PanelElement {
         }
       });
     onExport("copy", (step) => `Step ${step} copied.`, async (taken) => navigator.clipboard.writeText(await write(taken, this.#format())));
-    onExport("share", (step) => `Address of step ${step} copied.`, async ({ address }) => {
+    onExport("share", (step) => `Address of step ${step} copied.`, async ({ address, step, world }) => {
+      if (world.boxes === 0) throw new Error("there are no boxes to share");
+      if (step > LAST_STEP) throw new Error(`an address leads to step ${formatCount(LAST_STEP)} at most; download the boxes instead, and import them there`);
       if (address === "") throw new Error(`more than ${MOST_IN_ADDRESS} boxes of your own do not fit into an address; download them instead, and import them there`);
       await navigator.clipboard.writeText(address);
     });
@@ -482,14 +485,14 @@ export class BoxPlayground extends PanelElement {
     return { world: this.#world(), method: this.#lanes.all[at]!, step, boxes, pairs: lane.report.pairs, address: this.#addressOf(step) };
   }
 
-  /** The address that leads back to a step; none if the boxes do not fit into it. */
+  /** The address that leads back to a step; none if that takes too many steps, or the boxes do not fit into it. */
   #addressOf(step: number): string {
     clearTimeout(this.#writing);
     this.#keep("own", this.#ownText());
     const address = new URL(location.href);
     address.searchParams.delete("step");
-    if (step > 0 && step <= LAST_STEP) address.searchParams.set("step", String(step));
-    return this.#own && this.#state.own === "" ? "" : address.href;
+    if (step > 0) address.searchParams.set("step", String(step));
+    return step > LAST_STEP || (this.#own && this.#state.own === "") ? "" : address.href;
   }
 
   #begin(steps = 0): void {
@@ -527,6 +530,9 @@ export class BoxPlayground extends PanelElement {
     switch (message.type) {
       case "ready":
         this.#setUp(message.lists);
+        break;
+      case "loaded":
+        void keep(message.files);
         break;
       case "refused":
         this.write("message", message.reason);

@@ -6,7 +6,7 @@ import type { Plugin, Rolldown } from "vite";
 
 const publicFiles = new URL("../../public/", import.meta.url);
 
-/** What is larger, the engines of the benchmark page, the drawing in 3D and the editor of listings, is not needed for the article at first. */
+/** What is larger is stored once it has been loaded: the experiment of the playground, the engines of the benchmark page, the drawing in 3D, the editor of listings. */
 const LARGE = 350_000;
 
 export const offline: Plugin = {

@@ -28,14 +28,14 @@ self.addEventListener("activate", (event) => {
   event.waitUntil(clear());
 });
 
-// A page tells what it has loaded, also before this worker was there to see it.
+// A page tells what it and its threads have loaded, also before this worker was there to see it.
 self.addEventListener("message", (event) => {
   const keep = async () => {
     const cache = await caches.open(NAME);
     const missing = [];
     for (const url of new Set(event.data.loaded.map(stored))) if (url && !(await cache.match(url))) missing.push(url);
     await cache.addAll(missing);
-    event.source?.postMessage({ stored: true });
+    event.ports[0]?.postMessage("stored");
   };
   event.waitUntil(keep());
 });

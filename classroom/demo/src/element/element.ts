@@ -169,7 +169,7 @@ export class SapDemoElement extends LitElement {
   share(): string {
     const tick = this.#run?.timeline.tick ?? 0;
     // What a world that starts over would not become, or not soon, is shared as it is now.
-    const asIs = this.#run !== undefined && (this.#hands.hasMoved || tick > MOST_TICKS);
+    const asIs = this.#run !== undefined && (this.#run.timeline.hasMoved || tick > MOST_TICKS);
     const start = asIs ? 0 : tick;
     const balls = asIs ? JSON.stringify(this.#run!.rows()) : this.getAttribute("balls");
     const page = new URL(this.getAttribute("embed-url") ?? "embed.html", document.baseURI);
@@ -342,7 +342,7 @@ export class SapDemoElement extends LitElement {
     }
     this.#run?.free();
     this.#open(run);
-    this.#hands.letGo();
+    this.#hands.selection.clear();
     this.#guesses = new Guesses();
     this.#swapLog = new SwapLog();
     const isStill = isPaused || this.hasAttribute("paused") || options.isStatic || options.predicts || motionQuery.matches;

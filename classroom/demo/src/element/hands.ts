@@ -31,8 +31,6 @@ interface Handled {
 /** The hands of a visitor, by pointer and by keys: which balls they choose, and where they put them. */
 export class Hands {
   readonly selection: Selection = new Selection();
-  /** Whether a ball was ever put elsewhere. */
-  hasMoved = false;
   readonly #demo: SapDemo;
   readonly #handled: Handled;
   #grab: Grab | undefined;
@@ -54,7 +52,7 @@ export class Hands {
         const run = this.#handled.run()!;
         if (run.options.isStatic) return;
         const { x, y } = run.placeOf(ball);
-        this.#place(ball, x, y, vx, vy);
+        this.#handled.place(ball, x, y, vx, vy);
         if (!this.#demo.isPlaying) this.#handled.detectAgain();
       },
       choose: (ball) => this.#handled.run() && this.#choose(ball),
@@ -68,12 +66,6 @@ export class Hands {
     return run?.options.isDraggable === true && !run.question;
   }
 
-  /** Another world: nothing in it is chosen or moved. */
-  letGo(): void {
-    this.selection.clear();
-    this.hasMoved = false;
-  }
-
   /** Whether a ball is held and moved. */
   get isHolding(): boolean {
     return this.#grab?.held !== undefined;
@@ -82,7 +74,7 @@ export class Hands {
   /** Keeps the ball that is held where the hand is, in a world that goes on. */
   hold(): void {
     const { held, target } = this.#grab ?? {};
-    if (held !== undefined && target) this.#place(held, target.x, target.y, 0, 0);
+    if (held !== undefined && target) this.#handled.place(held, target.x, target.y, 0, 0);
   }
 
   /** The pointer is on a ball, or on its endpoint, or on none. */
@@ -124,17 +116,12 @@ export class Hands {
     guess: (choice) => this.#handled.guess(choice),
   };
 
-  #place(ball: number, x: number, y: number, vx: number, vy: number): void {
-    this.#handled.place(ball, x, y, vx, vy);
-    this.hasMoved = true;
-  }
-
   /** In a static world, the algorithm runs again at once. */
   #move(ball: number, x: number, y: number): void {
     const run = this.#handled.run()!;
     const isStill = !this.#demo.isPlaying;
     if (isStill) {
-      this.#place(ball, x, y, 0, 0);
+      this.#handled.place(ball, x, y, 0, 0);
       this.#handled.detectAgain();
     }
     this.#handled.moved({ ball, ...run.placeOf(ball) }, isStill);

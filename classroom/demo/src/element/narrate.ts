@@ -1,7 +1,7 @@
 import type { TraceEvent } from "../algorithms/trace.js";
 import type { Detection } from "./detection.js";
 
-const axisNames = ["x", "y"];
+export const axisNames: readonly string[] = ["x", "y"];
 
 /** Numbers as a sentence has them: no more digits than it takes. */
 export function inWords(value: number): string {
@@ -61,7 +61,7 @@ export function describeEvent(event: TraceEvent, known: Known): string {
     }
     case "compare":
       // Quicksort also meets its own pivot.
-      if (a === b) return `${edge(a)} is the pivot: it stays where it is.`;
+      if (a === b) return `${edge(a)} is the pivot itself: the scan stops here.`;
       return `Compare ${edge(a)} with ${edge(b)}.`;
     case "swap":
       if (!known.swapsTell || Math.abs(word("i") - word("j")) !== 1) return `Swap ${edge(a)} and ${edge(b)}.`;

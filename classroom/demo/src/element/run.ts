@@ -4,7 +4,7 @@ import { hasFlags, shownKinds } from "./detection.js";
 import { explain, type Explanation } from "./explain.js";
 import { namesOf } from "./names.js";
 import { describeEvent, type Known, summary } from "./narrate.js";
-import { asksOfScan, isWorldKept, type Options } from "./options.js";
+import { asksOfScan, isWorldKept, type Options, WIDTH } from "./options.js";
 import { type Listener, Playback } from "./playback.js";
 import { type Question, questionAt, questionsOfScan } from "./predict.js";
 import { Timeline } from "./timeline.js";
@@ -96,10 +96,14 @@ export class Run {
 
   /** The balls, rounded: to begin with elsewhere. With their velocities, if the world moves. */
   rows(): number[][] {
-    const rounded = (value: number): number => Math.round(value * 100) / 100;
-    if (this.options.isStatic) return this.balls.map((row) => row.map(Number).map(rounded));
-    const velocities = this.timeline.velocities();
-    return this.balls.map((row, ball) => [...row.map(Number), velocities[2 * ball]!, velocities[2 * ball + 1]!].map(rounded));
+    const { isStatic, world } = this.options;
+    const velocities = isStatic ? [] : [...this.timeline.velocities()];
+    return this.balls.map((row, ball) => {
+      const [x, y, radius, ...velocity] = [...row, ...velocities.slice(2 * ball, 2 * ball + 2)].map((value) => Math.round(100 * value!)) as [number, number, number];
+      // At a wall it is a little smaller: rounded, it might end outside.
+      const inside = Math.min(radius, x - 1, y - 1, 100 * WIDTH - x - 1, 100 * world.height - y - 1);
+      return [x, y, inside, ...velocity].map((value) => value / 100);
+    });
   }
 
   /** Where a ball is. */

@@ -1,11 +1,12 @@
 import type { Detection } from "./detection.js";
+import { axisNames } from "./narrate.js";
 
 /** How long a swap is flashed, in milliseconds. */
 export const FLASH_MS = 900;
 /** How many of the last changes are listed. */
 const LINES = 3;
 
-/** What the swaps have shown since a ball was taken: how many there were, and which overlaps began and ended. */
+/** What the swaps have shown since a ball was taken: how many there were, and which overlaps on one axis began and ended. */
 export class SwapLog {
   swaps = 0;
   begun = 0;
@@ -24,7 +25,7 @@ export class SwapLog {
   /** Adds what a detection did. Whether it swapped anything. */
   add(detection: Detection, names: readonly string[], focus: number | undefined, now: number): boolean {
     const { swaps } = this;
-    for (const { kind, a, b } of detection.events) {
+    for (const { kind, a, b, axis } of detection.events) {
       if (kind === "swap") {
         this.swaps++;
         for (const edge of [a, b]) this.#until.set(Number(edge), now + FLASH_MS);
@@ -33,7 +34,7 @@ export class SwapLog {
         const begins = kind === "axis overlap";
         if (begins) this.begun++;
         else this.ended++;
-        this.lines = [`${first} ${begins ? "begins" : "ceases"} to overlap ${second}`, ...this.lines].slice(0, LINES);
+        this.lines = [`${first} ${begins ? "begins" : "ceases"} to overlap ${second} on ${axisNames[Number(axis)]}`, ...this.lines].slice(0, LINES);
       }
     }
     return this.swaps > swaps;

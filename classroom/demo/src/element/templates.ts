@@ -1,6 +1,7 @@
 import { html, nothing, svg, type TemplateResult } from "lit";
 import type { Guesses, Question } from "./predict.js";
 import type { SwapLog } from "./swap-log.js";
+import type { Progress } from "./timeline.js";
 
 /** What the controls under the picture show and do. */
 export interface Controls {
@@ -9,7 +10,7 @@ export interface Controls {
   /** Whether there is anything to play; if not, nothing that moves through time is shown. */
   readonly canPlay: boolean;
   readonly canGoBack: boolean;
-  readonly progress: { readonly at: number; readonly of: number };
+  readonly progress: Progress;
   readonly speed: number;
   playOrPause(): void;
   back(): void;
@@ -81,7 +82,7 @@ export function guessing({ question, guesses, guess, next }: Guessing): Template
 export function swapsSoFar({ swaps, begun, ended, lines }: SwapLog): TemplateResult {
   const count = (number: number, what: string): string => `${number} ${what}${number === 1 ? "" : "s"}`;
   return html`<div class="swap-log" part="swap-log">
-    <p>Since the drag began: ${count(swaps, "swap")}, ${count(begun, "overlap")} begun, ${ended} ended.</p>
+    <p>Since the drag began: ${count(swaps, "swap")}, ${count(begun, "overlap")} on one axis begun, ${ended} ended.</p>
     <ol>${lines.map((line) => html`<li>${line}</li>`)}</ol>
   </div>`;
 }

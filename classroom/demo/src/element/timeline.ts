@@ -23,6 +23,49 @@ interface Tick {
   reported?: readonly ProgramEvent[];
 }
 
+/** Which of the kept ticks is shown, which of its stops has been reached, and of each tick the number of stops: 0 without a detection. */
+export interface Kept {
+  readonly at: number;
+  readonly stop: number;
+  readonly stops: readonly number[];
+}
+
+/** A kept tick, and one of its stops: -1 before the first. */
+type Moment = readonly [index: number, stop: number];
+
+export interface Progress {
+  readonly at: number;
+  readonly of: number;
+}
+
+export function progressOf({ at, stop, stops }: Kept): Progress {
+  const sum = (counts: readonly number[]): number => counts.reduce((total, count) => total + count, 0);
+  // A tick without a detection belongs to the last stop before it.
+  return { at: sum(stops.slice(0, at)) + (stops[at] === 0 ? 0 : stop + 1), of: sum(stops) };
+}
+
+/** The stop before the one that is shown, if there is one. */
+export function momentBefore({ at, stop, stops }: Kept): Moment | undefined {
+  const isFirst = !stops.slice(0, at).some((count) => count > 0);
+  if (stops[at] !== 0 && (stop > 0 || (stop === 0 && isFirst))) return [at, stop - 1];
+  for (let index = at - 1; index >= 0; index--) if (stops[index] !== 0) return [index, Infinity];
+  return undefined;
+}
+
+/** A stop by its index among the kept ones; 0 is the first. */
+export function momentAt({ stops }: Kept, place: number): Moment {
+  let left = Math.max(0, Math.trunc(place));
+  let last = 0;
+  for (const [index, count] of stops.entries()) {
+    if (count === 0) continue;
+    last = index;
+    // Between two detections there is no such thing as before the first stop.
+    if (left <= count && (left > 0 || index === 0)) return [index, left - 1];
+    left -= count;
+  }
+  return [last, Infinity];
+}
+
 /** How many ticks a demo can go back: a quarter of a minute. */
 const MOST_TICKS = 900;
 /** The most ticks times balls that are kept, so that many balls do not take too much memory. */
@@ -70,12 +113,13 @@ export class Timeline {
   }
 
   /**
-   * The state of the world after this many ticks. Only the last of its detections are run: of all of them a
-   * swap-driven method remembers no more than that.
+   * The state of the world after this many ticks. A method remembers no more than what its last detection found, so
+   * only that one is run. A broken variant remembers more: all of its detections are run.
    */
   static at(options: Options, kinds: ReadonlySet<TraceEvent["kind"]>, ticks: number): Timeline {
     const interval = options.skip + 1;
-    const first = Math.max(0, Math.ceil(ticks / interval) - 1) * interval;
+    const { method, like } = options.detecting;
+    const first = method === like ? Math.max(0, Math.ceil(ticks / interval) - 1) * interval : 0;
     const world = new World(options.world);
     for (let tick = 1; tick <= first; tick++) world.tick(tick % interval === 0);
     const timeline = new Timeline(options, kinds, world, first);
@@ -96,6 +140,11 @@ export class Timeline {
 
   get radii(): Float32Array {
     return this.#world.radii;
+  }
+
+  /** Whether a ball was ever put elsewhere. */
+  get hasMoved(): boolean {
+    return this.#world.hasMoved;
   }
 
   /** Where the balls were at the detection shown and at the one before it. */
@@ -170,9 +219,8 @@ export class Timeline {
     return this.#stop;
   }
 
-  /** Which of the kept ticks is shown, and of each the number of stops: 0 without a detection. */
-  get kept(): { readonly at: number; readonly stops: readonly number[] } {
-    return { at: this.#at, stops: this.#ticks.map(({ stops }) => stops) };
+  get kept(): Kept {
+    return { at: this.#at, stop: this.#stop, stops: this.#ticks.map(({ stops }) => stops) };
   }
 
   /** Whether anything has been kept from before. */
@@ -181,16 +229,8 @@ export class Timeline {
   }
 
   /** Where it is on the way from the oldest that is kept to the newest. */
-  get progress(): { at: number; of: number } {
-    let at = 0;
-    let of = 0;
-    this.#ticks.forEach(({ stops }, index) => {
-      if (index < this.#at) at += stops;
-      of += stops;
-    });
-    // A tick without a detection belongs to the last stop before it.
-    if (this.#ticks[this.#at]!.before) at += this.#stop + 1;
-    return { at, of };
+  get progress(): Progress {
+    return progressOf(this.kept);
   }
 
   /** The state of the world here, 16 hexadecimal digits. */
@@ -232,7 +272,7 @@ export class Timeline {
   /** Moves on by a tick, in the past or beyond it. Whether it was beyond, so that it is new. */
   nextTick(): boolean {
     if (this.#at < this.#ticks.length - 1) {
-      this.#goTo(this.#at + 1, -1);
+      this.goTo(this.#at + 1, -1);
       return false;
     }
     this.#bringWorld();
@@ -243,39 +283,27 @@ export class Timeline {
     return true;
   }
 
-  /** The stop before this one, in this detection or one before; whether there was one. */
-  back(): boolean {
-    if (this.#ticks[this.#at]!.before && (this.#stop > 0 || (this.#stop === 0 && this.#at === 0))) {
-      this.#stop--;
-      return true;
-    }
-    for (let index = this.#at - 1; index >= 0; index--) {
-      if (!this.#ticks[index]!.before) continue;
-      this.#goTo(index, Infinity);
-      return true;
-    }
-    return false;
+  /** The stop before this one, in this detection or one before, if there is one. */
+  back(): void {
+    const moment = momentBefore(this.kept);
+    if (moment) this.goTo(...moment);
   }
 
   /** Goes to a stop by its index among the kept ones; 0 is the first. */
   seek(place: number): void {
-    let left = Math.max(0, Math.trunc(place));
-    let last = 0;
-    for (const [index, { stops, before }] of this.#ticks.entries()) {
-      if (!before) continue;
-      last = index;
-      if (left <= stops) {
-        // Between two detections there is no such thing as before the first stop.
-        if (left > 0 || index === 0) return this.#goTo(index, left - 1);
-      }
-      left -= stops;
-    }
-    this.#goTo(last, Infinity);
+    this.goTo(...momentAt(this.kept, place));
   }
 
-  /** Goes to a stop of a kept tick that has a detection; beyond its last stop, to that one. */
+  /** Shows a tick that is kept, at one of its stops; beyond the last, at that one. */
   goTo(index: number, stop: number): void {
-    this.#goTo(index, stop);
+    const tick = this.#ticks[index]!;
+    if (tick.before && index !== this.#at) {
+      const runner = new Runner(tick.before);
+      this.#detect(runner, tick);
+      runner.free();
+    }
+    this.#at = index;
+    if (tick.before) this.showStop(stop);
   }
 
   /** Puts a ball elsewhere, here and now: what was to come is forgotten. */
@@ -378,18 +406,6 @@ export class Timeline {
     // What overlapped at the last detection was found there.
     const before = this.#boxes(last);
     return oracle.missed(sweptBoxes(before, boxes), found, oracle.pairs(before));
-  }
-
-  /** Shows a tick that is kept, at one of its stops. */
-  #goTo(index: number, stop: number): void {
-    const tick = this.#ticks[index]!;
-    if (tick.before && index !== this.#at) {
-      const runner = new Runner(tick.before);
-      this.#detect(runner, tick);
-      runner.free();
-    }
-    this.#at = index;
-    if (tick.before) this.showStop(stop);
   }
 
   /** Brings the world to the tick that is shown. */

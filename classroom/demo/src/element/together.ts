@@ -1,7 +1,7 @@
 import type { TraceEvent } from "../algorithms/trace.js";
 import { MS_PER_TICK } from "./playback.js";
 import type { Run } from "./run.js";
-import type { Timeline } from "./timeline.js";
+import { type Kept, momentAt, momentBefore, type Progress, progressOf, type Timeline } from "./timeline.js";
 
 /** A demo that shows the same world as others. */
 export interface Member {
@@ -51,10 +51,8 @@ export class Together {
   }
 
   /** Where it is on the way from the oldest stop that is kept to the newest. */
-  get progress(): { readonly at: number; readonly of: number } {
-    const { at, stops } = this.#kept;
-    const sum = (counts: readonly number[]): number => counts.reduce((total, count) => total + count, 0);
-    return { at: sum(stops.slice(0, at)) + (stops[at] === 0 ? 0 : this.#stop + 1), of: sum(stops) };
+  get progress(): Progress {
+    return progressOf(this.#kept);
   }
 
   /** Lets so much time pass. */
@@ -80,24 +78,13 @@ export class Together {
   }
 
   back(): void {
-    const { at, stops } = this.#kept;
-    const isFirst = !stops.slice(0, at).some((count) => count > 0);
-    if (stops[at] !== 0 && (this.#stop > 0 || (this.#stop === 0 && isFirst))) return this.#goTo(at, this.#stop - 1);
-    for (let index = at - 1; index >= 0; index--) if (stops[index] !== 0) return this.#goTo(index, Infinity);
+    const moment = momentBefore(this.#kept);
+    if (moment) this.#goTo(...moment);
   }
 
   /** Goes to a stop by its index among the kept ones; 0 is the first. */
   seek(place: number): void {
-    let left = Math.max(0, Math.trunc(place));
-    let last = 0;
-    const { stops } = this.#kept;
-    for (const [index, count] of stops.entries()) {
-      if (count === 0) continue;
-      last = index;
-      if (left <= count && (left > 0 || index === 0)) return this.#goTo(index, left - 1);
-      left -= count;
-    }
-    this.#goTo(last, Infinity);
+    this.#goTo(...momentAt(this.#kept, place));
   }
 
   /** Puts a ball elsewhere in every copy of the world. */
@@ -113,16 +100,11 @@ export class Together {
     return this.#members().flatMap(({ run }) => (run ? [run.timeline] : []));
   }
 
-  /** The stop that the furthest detection has reached. */
-  get #stop(): number {
-    return Math.max(...this.#timelines.map(({ stop }) => stop));
-  }
-
-  /** The kept ticks, each with the most stops of any of its detections. */
-  get #kept(): { at: number; stops: number[] } {
+  /** The kept ticks, each with the most stops of any of its detections, and the stop that the furthest has reached. */
+  get #kept(): Kept {
     const all = this.#timelines.map(({ kept }) => kept);
-    const first = all[0] ?? { at: 0, stops: [] };
-    return { at: first.at, stops: first.stops.map((_, index) => Math.max(...all.map(({ stops }) => stops[index] ?? 0))) };
+    const { at, stops } = all[0] ?? { at: 0, stops: [] };
+    return { at, stop: Math.max(-1, ...all.map(({ stop }) => stop)), stops: stops.map((_, index) => Math.max(...all.map(({ stops }) => stops[index] ?? 0))) };
   }
 
   #goTo(index: number, stop: number): void {

@@ -18,6 +18,8 @@ export class World {
   readonly #simulation: Simulation;
   readonly #options: WorldOptions;
   readonly radii: Float32Array;
+  /** Whether a ball was ever put elsewhere. */
+  hasMoved = false;
 
   /** @throws {@link OptionError} if the balls do not fit. */
   constructor(options: WorldOptions) {
@@ -54,6 +56,7 @@ export class World {
   /** Puts a ball somewhere else, inside the walls. */
   place(ball: number, x: number, y: number, vx = 0, vy = 0): void {
     this.#simulation.place(ball, { x, y, vx, vy });
+    this.hasMoved = true;
   }
 
   save(): number {
