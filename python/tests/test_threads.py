@@ -176,6 +176,26 @@ def test_a_signal_ends_a_stream() -> None:
     assert len(chunks) < 5_000_000_000 // 65_536
 
 
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="there are no such timers here")
+def test_a_signal_ends_a_stream_before_it_has_found_a_chunk() -> None:
+    def handler(number: int, frame: Any) -> None:
+        raise Cancelled
+
+    low = np.arange(3_000_000, dtype=np.float32)[::-1]
+    boxes = np.stack([low, low, low + 0.25, low + 0.25], axis=1)
+    boxes[:2] = 0  # the only pair
+    chunks: list[Any] = []
+    before = signal.signal(signal.SIGALRM, handler)
+    try:
+        with pytest.raises(Cancelled):
+            signal.setitimer(signal.ITIMER_REAL, 0.02)
+            sap.for_each_chunk(boxes, chunks.append)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    assert not chunks
+
+
 def count_in_child(results: Any, boxes: Any) -> None:
     results.put(sap.count_pairs(boxes, threads=2))
 
