@@ -1,6 +1,7 @@
 //! The persistent broad phase, whose dimensions and precision are chosen at run time. Every call is
 //! for many bodies at once.
 
+use std::collections::HashSet;
 use std::sync::Mutex;
 
 use pyo3::exceptions::PyValueError;
@@ -27,7 +28,7 @@ fn words_of(filter: Filter) -> Words {
 /// An id in Python: slot and generation in one number, as [`ProxyId::to_bits`], but counted from
 /// the first generation. So the ids of a world from which nothing was removed are 0, 1, 2, and so
 /// on, which are rows of the user's arrays. -1 is no id.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Default, PartialEq, Eq, Hash)]
 struct PythonId(i64);
 
 const FIRST_GENERATION: u64 = 1 << 32;
@@ -53,6 +54,8 @@ pub struct World(Mutex<Space>);
 struct Space {
     world: Box<dyn ArrayBroadPhase<PythonId>>,
     kind: Kind,
+    /// What updates found that did not reach Python, because a signal came, say.
+    missed: Option<Found>,
     /// Whether the last update ended with an error, perhaps after it had found what changed: then the next one reports that.
     is_due: bool,
 }
@@ -266,16 +269,31 @@ impl World {
 
     fn update<'py>(&self, py: Python<'py>) -> PyResult<(Array<'py>, Array<'py>)> {
         self.with(|space| {
+            let missed = space.missed.take();
             let mut ids = Vec::new();
             let is_due = core::mem::replace(&mut space.is_due, true);
             let found = space.run(py, space.world.len(), |world| world.update(is_due, &mut ids))?;
-            let begun = found.map_err(|error| raise(py, error, "", &[]))?;
-            let (begun, ended) = ids.split_at(begun);
-            let changes = (id_pairs(py, begun)?, id_pairs(py, ended)?);
-            // A signal that came meanwhile is raised here, where the changes are not lost.
-            py.check_signals()?;
+            let begun = match found {
+                Ok(begun) => begun,
+                Err(error) => {
+                    space.missed = missed;
+                    return Err(raise(py, error, "", &[]));
+                }
+            };
             space.is_due = false;
-            Ok(changes)
+            let mut found = Found { ids, begun };
+            if let Some(missed) = missed {
+                found = missed.then(&found);
+            }
+            let [begun, ended] = found.parts();
+            let arrays = id_pairs(py, begun)
+                .and_then(|begun| Ok((begun, id_pairs(py, ended)?)))
+                // A signal that came meanwhile is raised here, where the changes are not lost.
+                .and_then(|arrays| py.check_signals().map(|()| arrays));
+            if arrays.is_err() {
+                space.missed = Some(found);
+            }
+            arrays
         })
     }
 
@@ -399,7 +417,7 @@ impl Space {
         let world = kind.broad_phase(report);
         let world = world.ok_or_else(|| PyValueError::new_err("dimensions must be 1, 2 or 3"))?;
         let world = world.map_err(|error| raise(py, error, "", &[]))?;
-        Ok(Self { world, kind, is_due: false })
+        Ok(Self { world, kind, missed: None, is_due: false })
     }
 
     fn copy(&mut self, boxes: &Array<'_>) -> PyResult<usize> {
@@ -427,6 +445,45 @@ impl Space {
             None => Ok(()),
         }
     }
+}
+
+/// What changed: the ids of the pairs that began and then of those that ended, each sorted by slot.
+struct Found {
+    ids: Vec<PythonId>,
+    /// How many of the ids are of pairs that began.
+    begun: usize,
+}
+
+impl Found {
+    fn parts(&self) -> [&[PythonId]; 2] {
+        self.ids.split_at(self.begun).into()
+    }
+
+    /// What changed in all, if this changed first and then that.
+    fn then(&self, then: &Self) -> Self {
+        let ([begun, ended], [begun_then, ended_then]) = (self.parts(), then.parts());
+        let mut ids = net(begun, ended_then, begun_then, ended);
+        let begun_in_all = ids.len();
+        ids.append(&mut net(ended, begun_then, ended_then, begun));
+        Self { ids, begun: begun_in_all }
+    }
+}
+
+/// The pairs of `first` that are not undone, and those of `then` that undo nothing, sorted by slot.
+fn net(
+    first: &[PythonId],
+    undone: &[PythonId],
+    then: &[PythonId],
+    undoes: &[PythonId],
+) -> Vec<PythonId> {
+    let left = |pairs: &[PythonId], others: &[PythonId]| -> Vec<[PythonId; 2]> {
+        let others: HashSet<_> = others.as_chunks::<2>().0.iter().collect();
+        pairs.as_chunks().0.iter().filter(|pair| !others.contains(pair)).copied().collect()
+    };
+    let mut pairs = left(first, undone);
+    pairs.append(&mut left(then, undoes));
+    pairs.sort_unstable_by_key(|&[a, b]| (a.0 as u32, b.0 as u32, a.0, b.0));
+    pairs.into_flattened()
 }
 
 fn id_pairs<'py>(py: Python<'py>, ids: &[PythonId]) -> PyResult<Array<'py>> {

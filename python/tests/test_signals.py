@@ -81,8 +81,18 @@ while interrupts < 20:
     ids = interrupted(lambda: world.insert_many(boxes))
     lost += ids is None and len(world) > 0  # bodies whose ids are lost
     if len(world) == 0:
-        world.insert_many(boxes)
+        ids = world.insert_many(boxes)
     changes = interrupted(world.update)
+    if changes is None and ids is not None:  # the next one reports what moved meanwhile, too
+        now = boxes.copy()
+        now[::7] += 10
+        world.set_many(ids[::7], now[::7])
+        world.remove(ids[1])
+        after = world.update()
+        wanted = np.delete(ids, 1)[sap.find_pairs(np.delete(now, 1, axis=0))]
+        found, wanted = (set(map(frozenset, pairs.tolist())) for pairs in (after.begun, wanted))
+        lost += found != wanted or len(after.ended) > 0
+        continue
     after = world.update()
     reported = len(after.begun) + (0 if changes is None else len(changes.begun))
     assert reported in (0, expected), "doubled"

@@ -822,8 +822,8 @@ class BroadPhase:
             MemoryError: if the pairs of a crowd do not fit into memory. The world and its bodies are as before. Once
                 the crowd is apart, removed or filtered, the next call reports what changed.
 
-        If the pairs were found, but then Ctrl-C came or there was no memory for the arrays, the next call returns them
-        instead of updating, and the one after it what changed since. (A copy or a snapshot made between has lost them.)
+        If Ctrl-C came meanwhile, or there was no memory for the arrays, the next call reports what changed since the last one
+        that returned. (A copy or a snapshot made between has lost what was found.)
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
