@@ -156,6 +156,26 @@ fn boxes_in_motion_are_checked_frame_by_frame_and_small_inputs_against_brute_for
 }
 
 #[test]
+fn no_part_measures_again_what_another_has_with_more_libraries() {
+    let file = folder("parts").join("here.json");
+    let boxes = ["--sizes", "100", "--scenes", "uniform", "--dimensions", "2"];
+    let (_, record) = measure(&file, &[&["--small", "--flat", "--worlds"][..], &boxes].concat());
+    assert_eq!((cases(&record).len(), record["worlds"].as_array().unwrap().len()), (1, 0));
+    let results = cases(&record)[0]["results"].as_array().unwrap();
+    assert!(
+        results.iter().any(|entry| entry["name"] == "one-axis sweep, vectorized"),
+        "{results:?}"
+    );
+
+    let output = file.to_str().unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_sweep-and-prune-bench"));
+    command.args([&["measure", "--worlds", "--output", output][..], &boxes].concat());
+    let done = command.output().unwrap();
+    assert!(!done.status.success());
+    assert!(String::from_utf8_lossy(&done.stderr).contains("nothing to measure"), "{done:?}");
+}
+
+#[test]
 fn worlds_are_checked_event_by_event_and_reported() {
     let folder = folder("worlds");
     let file = folder.join("here.json");
@@ -165,7 +185,7 @@ fn worlds_are_checked_event_by_event_and_reported() {
     assert_eq!((worlds.len(), cases(&record).len()), (8, 0));
     let mut names = vec!["sweep-and-prune", "sweep-and-prune, from scratch"];
     if cfg!(feature = "light") {
-        names.extend(["parry, from scratch", "rapier"]);
+        names.extend(["packed_spatial_index, from scratch", "rapier"]);
     }
     for world in worlds {
         assert_eq!(world["reference"], "brute force");
