@@ -105,8 +105,9 @@ def test_geometries_count_before_columns_that_are_known_as_boxes() -> None:
         table = parquet.read_table("a.parquet")
         for one in (frame, table, *table.to_batches()):
             assert sap.count_pairs(one) == 0 and sap.count_pairs(one, margin=1) == 1
-        with pytest.raises(ValueError, match='boxes has geometries, whose bounds are corners: leave out format="xywh"'):
-            sap.find_pairs(table, format="xywh")
+        for one in (frame, table, frame.geometry, frame.geometry.values, list(frame.geometry)):
+            with pytest.raises(ValueError, match='boxes has geometries, whose bounds are .*: leave out format="xywh"'):
+                sap.find_pairs(one, format="xywh")
         assert sap.count_pairs(table.select(["start", "end"])) == 1
     other = frame.to_crs("EPSG:4326")
     other.to_parquet("b.parquet")

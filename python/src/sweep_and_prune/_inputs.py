@@ -128,7 +128,10 @@ def _raw_boxes(values: Any, name: str, format: str | None) -> Raw:
     if array.dtype.kind == "O" and array.ndim == 1:
         if _are_lists(array):
             return raw_boxes(_of_one_length(array), name, format)
-        array = _from_geometries(array)
+        bounds = _from_geometries(array)
+        if bounds is not array:
+            refuse_sizes(format, name)
+        array = bounds
     if array.dtype.kind == "O" and not is_exact and (array.ndim > 1 or array.size == 0):
         raise TypeError(f"{name} must be numbers, not of dtype object: convert them to one type of numbers")
     if array.ndim == 3 and array.shape[1] == 2 and 1 <= array.shape[2] <= 3:
@@ -370,6 +373,7 @@ def unknown_columns(columns: list[str], otherwise: str, option: str = 'format="{
 
 def _from_columns(values: Any, columns: list[str], name: str, format: str | None) -> Raw:
     if hasattr(type(values), "total_bounds"):  # asked of the class: the frame would compute them
+        refuse_sizes(format, name)
         values = values.bounds
         if isinstance(values, np.ndarray):  # those of an array of geometries
             return Raw(values)
