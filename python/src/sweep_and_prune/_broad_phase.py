@@ -822,8 +822,8 @@ class BroadPhase:
             MemoryError: if the pairs of a crowd do not fit into memory. The world and its bodies are as before. Once
                 the crowd is apart, removed or filtered, the next call reports what changed.
 
-        If Ctrl-C came meanwhile, or there was no memory for the arrays, the next call reports what changed since the last
-        one that returned. (A copy or a snapshot made between has lost what was found.)
+        If Ctrl-C came meanwhile, or there was no memory for the arrays, the next call reports what changed since the
+        last one that returned. (A copy or a snapshot made between has lost what was found.)
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
