@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from collections import Counter
 from collections.abc import Callable, Hashable, Sequence
 from typing import Any, NamedTuple, Union
@@ -11,7 +10,7 @@ from typing import Any, NamedTuple, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import thread_count
+from ._arrays import processors, thread_count
 from ._columns import group_codes, is_rounded
 from ._crs import difference
 from ._inputs import Raw, chosen_boxes, listed, named_column, raw_boxes
@@ -580,7 +579,7 @@ def _on_threads(test: Callable[[slice], NDArray[np.bool_]], of_a: Indices, threa
     ends = np.append(np.flatnonzero(of_a[1:] != of_a[:-1]) + 1, len(of_a))
     blocks = np.unique(ends[np.searchsorted(ends, np.append(np.arange(_BLOCK, len(of_a), _BLOCK), len(of_a)))])
     rows = [slice(start, end) for start, end in zip([0, *blocks[:-1].tolist()], blocks.tolist())]
-    number = min(thread_count(threads), os.cpu_count() or 1, len(rows))
+    number = min(thread_count(threads), processors(), len(rows))
     if number == 1:
         return np.concatenate([test(block) for block in rows])
     from concurrent.futures import ThreadPoolExecutor  # here, since it takes half of the import of this package

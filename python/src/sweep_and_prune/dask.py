@@ -28,6 +28,7 @@ from typing import Any, NamedTuple, Union
 
 import numpy as np
 
+from ._arrays import processors
 from ._crs import difference
 from ._inputs import checked_format
 from ._partitioned.boxes import InvalidRowError, list_files
@@ -523,5 +524,5 @@ def _threads() -> int:
     """How many cells at least, so that all threads of the workers are busy."""
     client = active_client()
     if client is None:
-        return 4 * (os.cpu_count() or 1)
+        return 4 * processors()
     return 4 * max(1, int(sum(client.nthreads().values())))

@@ -10,6 +10,7 @@ from contextlib import contextmanager, suppress
 from threading import Event, Thread
 from typing import Any, NamedTuple
 
+from .._arrays import processors
 from .._errors import SweepAndPruneError
 from . import uninterrupted
 from .dataset import DatasetError
@@ -142,7 +143,7 @@ def started(limit: int | str | float | None, number: int | None) -> Iterator[Wor
         return
     memory, own = memory_of(limit), _resident()
     if number is None:
-        number = os.cpu_count() or 1
+        number = processors()
         # Each worker costs memory, so that a small limit has fewer.
         while number > 1 and (memory - own) // number < _WORKER_MEMORY + 3 * _TASK_MEMORY:
             number -= 1
