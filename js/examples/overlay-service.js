@@ -1,6 +1,7 @@
 // A GeoJSON service: which parcels lie in which flood zones, sent as the pairs are found, no faster than the client reads.
 import { once } from "node:events";
 import { createServer, get } from "node:http";
+import { pipeline } from "node:stream/promises";
 import { init, PairFinder } from "sweep-and-prune";
 
 await init();
@@ -33,17 +34,22 @@ function boxesOf(features) {
 const [parcelBoxes, zoneBoxes] = [boxesOf(parcels), boxesOf(zones)];
 const finder = new PairFinder({ dimensions: 2 });
 
-const server = createServer(async (request, response) => {
-  response.writeHead(200, { "content-type": "application/geo+json-seq" });
+/** The pairs, a line of JSON for each, chunk by chunk. */
+function* lines() {
   for (const pairs of finder.chunks(parcelBoxes, zoneBoxes)) {
-    const lines = [];
+    let text = "";
     for (let i = 0; i < pairs.length; i += 2) {
       // Boxes overlap; for polygons that are no rectangles, test here whether they do.
-      lines.push(JSON.stringify({ parcel: parcels[pairs[i]].id, zone: zones[pairs[i + 1]].id }), "\n");
+      text += JSON.stringify({ parcel: parcels[pairs[i]].id, zone: zones[pairs[i + 1]].id }) + "\n";
     }
-    if (!response.write(lines.join(""))) await once(response, "drain"); // until the client has read it
+    yield text;
   }
-  response.end();
+}
+
+const server = createServer((request, response) => {
+  response.writeHead(200, { "content-type": "application/x-ndjson" });
+  // Waits until the client has read. If it goes away, the search ends, and so does this.
+  pipeline(lines, response).catch(() => {});
 });
 
 server.listen(0, "127.0.0.1");

@@ -1,4 +1,5 @@
 // A thread of Node that finds pairs: the boxes and the pairs are in memory that both threads share.
+import { once } from "node:events";
 import { isMainThread, parentPort, Worker, workerData } from "node:worker_threads";
 import { init, PairFinder } from "sweep-and-prune";
 
@@ -7,13 +8,12 @@ if (isMainThread) {
   const pairs = new Uint32Array(new SharedArrayBuffer(8 * 50_000)); // up to 50,000 pairs of indices
   const worker = new Worker(new URL(import.meta.url), { workerData: { boxes, pairs } });
 
-  /** Finds the pairs of the first `count` boxes. Resolves to how many there are; write no boxes until then. */
-  const find = (count) =>
-    new Promise((resolve, reject) => {
-      worker.once("message", resolve);
-      worker.once("error", reject);
-      worker.postMessage(count);
-    });
+  /** Finds the pairs of the first `count` boxes. Resolves to how many there are: until then, write no boxes and find no others. */
+  const find = async (count) => {
+    worker.postMessage(count);
+    const [found] = await once(worker, "message"); // rejects if the thread fails
+    return found;
+  };
 
   boxes.set([0, 0, 2, 2, 5, 5, 6, 6, 2, 1, 3, 4]);
   const count = await find(3);

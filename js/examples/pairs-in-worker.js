@@ -5,7 +5,7 @@ const pairs = new Uint32Array(new SharedArrayBuffer(8 * 50_000)); // up to 50,00
 const worker = new Worker(new URL("./pairs-worker.js", import.meta.url), { type: "module" });
 worker.postMessage({ boxes, pairs });
 
-/** Finds the pairs of the first `count` boxes. Resolves to how many there are; write no boxes until then. */
+/** Finds the pairs of the first `count` boxes. Resolves to how many there are: until then, write no boxes and find no others. */
 function find(count) {
   return new Promise((resolve, reject) => {
     worker.onmessage = ({ data }) => resolve(data);
