@@ -180,7 +180,7 @@ summed over every axis.
 - p: pairs, boxes that overlap on every axis.
 
 *Average* means a world that moves a little from step to step, with the order of the last step \
-kept. m, M, s and S range from 0 to about 2n²; p ≤ m ≤ n(n-1)/2.
+kept. m and s range from 0 to about 2n², M and S to that for each axis; p ≤ m ≤ n(n-1)/2.
 
 ";
 

@@ -210,7 +210,8 @@ export class Runner {
   /**
    * Clears the recording except for what the next step continues from: the arrays, the axis overlaps
    * and the current pairs are then its only events. With this, each step has a trace of its own that a
-   * {@link Player} can play. The time depends on the length of the recording.
+   * {@link Player} can play. The time depends on the length of the recording. Of one that {@link Runner.isTruncated}
+   * they are those of its last event, and the next step's trace begins with them.
    *
    * @returns how many events remain.
    */
