@@ -67,8 +67,9 @@ test("npm packages have licenses that we accept", () => {
   for (const lock of locks) {
     for (const [name, { license, link }] of Object.entries(JSON.parse(read(lock)).packages)) {
       if (name === "" || link || license === undefined) continue;
-      const words = license.replace(/[()]/g, "").split(/ (?:OR|AND) /);
-      if (!words.some((word) => accepted.has(word) || tools.has(word))) refused.push(`${lock}: ${name}: ${license}`);
+      // All of those joined by AND apply, and any of those joined by OR.
+      const parts = license.replace(/[()]/g, "").split(" AND ").map((part) => part.split(" OR "));
+      if (!parts.every((part) => part.some((word) => accepted.has(word) || tools.has(word)))) refused.push(`${lock}: ${name}: ${license}`);
     }
   }
   assert.deepEqual(refused, []);

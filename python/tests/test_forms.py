@@ -588,6 +588,25 @@ def test_tensors_of_torch() -> None:
     assert same(sap.find_pairs(torch.tensor(BOXES, requires_grad=True)))
 
 
+def test_what_is_like_a_tensor_of_torch() -> None:
+    class Tensor:
+        def __init__(self, where: str) -> None:
+            self.where = where
+
+        def detach(self) -> Tensor:
+            return Tensor("gpu, without gradient" if self.where == "gpu" else self.where)
+
+        def cpu(self) -> Tensor:
+            return Tensor("cpu" if self.where == "gpu, without gradient" else self.where)
+
+        def __array__(self, *_: Any, **__: Any) -> Any:
+            if self.where != "cpu":
+                raise TypeError("can't convert it to numpy")
+            return BOXES
+
+    assert same(sap.find_pairs(Tensor("gpu")))
+
+
 @pytest.mark.parametrize("dtype", ["i8", "i4", "u1", "u8", ">i4"])
 @pytest.mark.parametrize("dimensions", DIMENSIONS)
 def test_whole_numbers_without_ends_in_any_order_of_memory(dimensions: int, dtype: str) -> None:

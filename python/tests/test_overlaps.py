@@ -112,6 +112,7 @@ def one_call(random: Random) -> None:
     def size(box: list[Any]) -> Any:
         return math.prod(max(high - low, 0) for low, high in zip(box[:half], box[half:]))
 
+    assert {len(values) for values in found} == {len(every)}, said
     for (i, j), (shared, of_a, of_b, iou) in zip(every, zip(plain(found.size), *found[1:])):
         first, second = a.rows[i], b.rows[j]
         common = [*map(max, zip(first[:half], second[:half])), *map(min, zip(first[half:], second[half:]))]
@@ -137,9 +138,10 @@ def one_call(random: Random) -> None:
     asked = {"max_distance": reach, "how": how, "closed": closed, "missing": "skip", **of_two}
     nearest = sap.nearest(a.given, b.given, k, **asked)
     assert [tuple(pair) for pair in nearest.pairs.tolist()] == [(i, j) for i, j, _ in near], said
-    for distance, (_, j, square) in zip(plain(nearest.distances), near):
+    assert len(nearest.distances) == len(near), said
+    for exact, distance, (_, j, square) in zip(nearest.distances, plain(nearest.distances), near):
         if j == -1:
-            assert distance == -1 or distance != distance or kind == "times", said
+            assert exact == -1 if nearest.distances.dtype.kind in "iuO" else exact != exact, said  # or NaN, or NaT
         elif half == 1:
             assert distance * distance == square, said
         else:
@@ -477,6 +479,15 @@ def test_decimals_have_distances_and_sizes_beside_floating_point() -> None:
     assert (found.size.tolist(), found.fraction_a.tolist()) == ([0.4], [0.5])
     assert sap.nearest(one, others, k=3).distances.tolist() == [0, 0.0375, 0.1]
     assert len(sap.nearest(one, others, k=3, max_distance=decimal("0.1")).pairs) == 3
+    far: Any = {"start": [decimal(5), decimal("0.5")], "end": [decimal(6), decimal(1)]}
+    for near in (one, {"start": [0.1], "end": [0.9]}):
+        assert [math.isnan(each) for each in sap.nearest(far, near, max_distance=1, how="left").distances] == [
+            True,
+            False,
+        ]
+    assert math.isnan(
+        sap.nearest({"start": [decimal(5)], "end": [decimal(6)]}, one, max_distance=1, how="left").distances[0]
+    )
     assert sap.coverage(one, others).tolist() == [0.4]
 
 

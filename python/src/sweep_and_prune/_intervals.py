@@ -334,15 +334,19 @@ def nearest(
     if not is_closed:
         keys = np.where(_overlap_without_ends(corners, pairs), keys.dtype.type(-1), keys)  # before those that touch
     order = nearest_of_rows(pairs[:, 0], pairs[:, 1], keys, len(corners[0]), k)
-    pairs, distances = pairs[order], distances[order]
+    pairs, distances = pairs[order], rounded(distances[order])
     if how == "left":
         alone = np.setdiff1d(np.arange(len(corners[0])), pairs[:, 0])
         pairs = np.concatenate([pairs, np.stack([alone, np.full(len(alone), -1)], axis=1)])
+        if len(distances) == 0 and any(rounded(values.ravel()).dtype.kind == "f" for values in corners):
+            distances = np.empty(0)
         nothing = {"m": "NaT", "f": np.nan}.get(distances.dtype.kind, -1)
+        if distances.dtype.kind == "O" and any(type(value) is not int for values in corners for value in values.flat):
+            nothing = np.nan  # they are decimals
         distances = np.concatenate([distances, np.full(len(alone), nothing, distances.dtype)])
         order = np.argsort(pairs[:, 0], kind="stable")
         pairs, distances = pairs[order], distances[order]
-    return Nearest(pairs, rounded(distances))
+    return Nearest(pairs, distances)
 
 
 def _limit(max_distance: Any, corners: Values) -> Any:
