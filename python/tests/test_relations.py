@@ -106,7 +106,7 @@ def test_geometries_count_before_columns_that_are_known_as_boxes() -> None:
         for one in (frame, table, *table.to_batches()):
             assert sap.count_pairs(one) == 0 and sap.count_pairs(one, margin=1) == 1
         for one in (frame, table, frame.geometry, frame.geometry.values, list(frame.geometry)):
-            with pytest.raises(ValueError, match='boxes has geometries, whose bounds are .*: leave out format="xywh"'):
+            with pytest.raises(ValueError, match=r'boxes has geometries, .*: leave out format="xywh"'):
                 sap.find_pairs(one, format="xywh")
         assert sap.count_pairs(table.select(["start", "end"])) == 1
     other = frame.to_crs("EPSG:4326")
