@@ -663,6 +663,40 @@ static void bad_arguments(void) {
     FINDER(_destroy)(&finder);
 }
 
+// A character that stands on a floor touches it, and hits it first whichever way it moves, unless it ignores what it touches.
+static void cast_from_the_floor(void) {
+    aabb_type floor = {0}, wall = {0}, character = {0};
+    for (int axis = 0; axis < DIMENSIONS; axis++) {
+        floor.min[axis] = wall.min[axis] = -10;
+        floor.max[axis] = wall.max[axis] = 10;
+        character.max[axis] = 1;
+    }
+    floor.max[DIMENSIONS - 1] = 0;
+    wall.min[0] = 6;
+    wall.max[0] = 7;
+    wall.min[DIMENSIONS - 1] = 0.5;
+    sap_id floor_id, wall_id;
+    OK(WORLD(_insert)(world, &floor, NULL, &floor_id, &error));
+    OK(WORLD(_insert)(world, &wall, NULL, &wall_id, &error));
+    cast_type cast = {.from = character, .limit = 100};
+    cast.direction[0] = 1;
+    hit_type hits[3];
+    size_t found;
+    OK(WORLD(_cast_all)(world, &cast, NULL, hits, 3, &found, &error));
+    CHECK(found == 2 && hits[0].id == floor_id && hits[0].t == 0 && hits[1].id == wall_id && hits[1].t == 5);
+    CHECK(hits[0].normal[DIMENSIONS - 1] == 1 && hits[0].normal[0] == 0);
+    CHECK(hits[1].normal[0] == -1 && hits[1].normal[DIMENSIONS - 1] == 0);
+    cast.ignore_touching = true;
+    OK(WORLD(_cast_all)(world, &cast, NULL, hits, 3, &found, &error));
+    CHECK(found == 1 && hits[0].id == wall_id && hits[0].t == 5 && hits[0].normal[0] == -1);
+    cast.direction[0] = 0;
+    cast.direction[DIMENSIONS - 1] = 1;
+    OK(WORLD(_cast)(world, &cast, NULL, hits, &error));
+    CHECK(hits[0].id == SAP_NO_ID);
+    OK(WORLD(_remove_many)(world, (sap_id[]){floor_id, wall_id}, 2, &error));
+    OK(WORLD(_update)(world, NULL, &error));
+}
+
 int main(int argument_count, char **arguments) {
     int steps = argument_count > 1 ? atoi(arguments[1]) : 3000;
     random_state += argument_count > 2 ? strtoull(arguments[2], NULL, 10) : 0;
@@ -672,6 +706,7 @@ int main(int argument_count, char **arguments) {
         OK(WORLD(_create)(variant == 0 ? NULL : &options, &world, &error));
         OK(WORLD(_create)(NULL, &other, &error));
         bad_arguments();
+        cast_from_the_floor();
         for (int step = 0; step < steps; step++) {
             uint32_t what = below(100);
             if (what < 10 && count < MOST) insert();

@@ -181,12 +181,11 @@ impl<const D: usize, T: Scalar> Case<'_, D, T> {
         }
     }
 
-    /// A box that is not valid is named, whichever set it is in.
+    /// A box that is not valid is named, whichever set it is in, and also beside an empty set.
     fn refuse(&self, finder: &mut PairFinder<D, T>, at: usize) {
         let mut sets = [self.boxes.to_vec(), self.against.unwrap_or_default().to_vec()];
         let (set, axis) = (usize::from(self.against.is_some() && at.is_multiple_of(2)), at % D);
-        // With an empty set there are no pairs, and the other set is not validated.
-        if sets.iter().take(1 + usize::from(self.against.is_some())).any(Vec::is_empty) {
+        if sets[set].is_empty() {
             return;
         }
         let index = at % sets[set].len();

@@ -128,7 +128,16 @@ impl<const D: usize, T: Scalar> Aabb<D, T> {
     #[inline]
     #[must_use]
     pub fn half_extents(&self) -> [T; D] {
-        self.extents().map(|extent| extent * T::from_f64(0.5))
+        let half = T::from_f64(0.5);
+        core::array::from_fn(|axis| {
+            let extent = self.max[axis] - self.min[axis];
+            // The size of a huge box may be infinite where its half is not.
+            if extent < T::INFINITY {
+                extent * half
+            } else {
+                self.max[axis] * half - self.min[axis] * half
+            }
+        })
     }
 
     /// Whether two boxes share a point. Intervals are closed: touching boxes overlap.

@@ -10,6 +10,8 @@ fn a_box_has_a_center_and_full_and_half_extents() {
     assert_eq!(aabb.half_extents(), [0.5, 3.0, 0.0]);
     assert_eq!(Aabb::from_center(aabb.center(), aabb.half_extents()), aabb);
     assert!(!Aabb::from_center([0.0f32], [-1.0]).is_valid());
+    let huge = Aabb::new([-f32::MAX], [f32::MAX]);
+    assert_eq!(Aabb::from_center(huge.center(), huge.half_extents()), huge);
 }
 
 #[test]

@@ -2,7 +2,7 @@ import { css, type CSSResult, html, LitElement, nothing, type TemplateResult } f
 import { clock } from "./clock.js";
 import { workOf } from "./counters.js";
 import { reducesMotion } from "./motion-query.js";
-import { hasSeed, newSeed } from "./options.js";
+import { hasSeed, isOn, newSeed } from "./options.js";
 import { styles } from "./styles.js";
 import { controls, sharing } from "./templates.js";
 import { type Member, Together } from "./together.js";
@@ -30,7 +30,7 @@ interface Total {
 /**
  * `<sap-comparison>`: the `<sap-demo>`s inside it show one world, each by its own method, always at the same tick,
  * with one set of controls. The totals of the last finished detection stand below as bars. All of them need the same
- * `balls`, `seed`, `motion` and `skip-interval`.
+ * `balls`, `seed`, `motion` and `skip-interval`. If an attribute of one changes more than looks, all start over.
  */
 export class SapComparisonElement extends LitElement {
   static override styles: CSSResult[] = [
@@ -102,7 +102,7 @@ export class SapComparisonElement extends LitElement {
   begun(): void {
     this.#totals = undefined;
     if (!this.#isReady) return;
-    const isStill = this.#entries.some(({ demo }) => demo.hasAttribute("paused")) || reducesMotion();
+    const isStill = this.#entries.some(({ demo }) => isOn(demo.getAttribute("paused"))) || reducesMotion();
     this.#setPlaying(!isStill);
   }
 

@@ -156,6 +156,13 @@ export function shownKinds({ checks, sweep, array }: Decorations, detecting: Det
   return kinds;
 }
 
+/** Whether other options of the same world leave its detections as they were, and change only how they are shown. */
+export function areDetectionsKept(before: Options, after: Options): boolean {
+  const key = ({ detecting, decorations, skip, swept, predicts }: Options): string =>
+    JSON.stringify([detecting, [...shownKinds(decorations, detecting)], skip, swept, predicts]);
+  return before.program === after.program && key(before) === key(after);
+}
+
 /** Whether anything moves, or can be stepped through; while a ball is dragged that stays as it is. */
 export function canPlay(options: Options | undefined): boolean {
   return !options?.isStatic || shownKinds(options.decorations, options.detecting).size > 0;

@@ -10,7 +10,7 @@ import { press } from "./keys.js";
 import { loadDemos } from "./load.js";
 import { messageOf } from "./option-error.js";
 import { motionQuery } from "./motion-query.js";
-import { asksOfScan, attributes, HEIGHT, hasSeed, MOST_TICKS, newSeed, type Options, readOptions, readStart, readStop, WIDTH } from "./options.js";
+import { asksOfScan, attributes, HEIGHT, hasSeed, isOn, MOST_TICKS, newSeed, type Options, readOptions, readStart, readStop, WIDTH } from "./options.js";
 import { paint } from "./paint.js";
 import { Guesses, type Question } from "./predict.js";
 import { addProperties } from "./properties.js";
@@ -135,6 +135,7 @@ export class SapDemoElement extends LitElement {
     const isNew = timeline.isDetected;
     if (isNew && options.isStatic) timeline.rewind();
     else if (isNew) run.nextDetection(this.#listener);
+    if (timeline.isOver) return;
     this.#guesses.outcome = "";
     // The first event of a detection is to be guessed too.
     if (isNew && options.predicts) this.#skipToQuestion();
@@ -296,9 +297,9 @@ export class SapDemoElement extends LitElement {
     super.attributeChangedCallback(name, old, value);
     if (old === value || !(attributes as readonly string[]).includes(name)) return;
     if (!this.#run && this.#wrong === "") return this.requestUpdate();
-    if (name === "paused") return value === null ? this.play() : this.pause();
+    if (name === "paused") return isOn(value) ? this.pause() : this.play();
     // Several that change at once are read at once.
-    if (!this.#hasChanged) queueMicrotask(() => this.#understand());
+    if (!this.#hasChanged) queueMicrotask(() => this.#hasChanged && this.#understand());
     this.#hasChanged = true;
   }
 
@@ -313,23 +314,31 @@ export class SapDemoElement extends LitElement {
     this.#hasChanged = false;
     const options = this.#readOptions();
     if (!options) return;
-    const asked = this.#run?.options.predicts;
+    const before = this.#run;
+    const same = before?.shownUnder(options);
+    if (same) {
+      this.#open(same);
+      return this.#changed();
+    }
+    // The ticks that demos keep are the same ones only if all begin together.
+    if (this.#comparison) return this.#comparison.reset();
     let run: Run | undefined;
     try {
-      run = this.#run?.goOn(options);
+      run = before?.goOn(options);
     } catch (error) {
-      // A program has failed.
+      // Out of memory, at most.
       return this.#refuse(messageOf(error));
     }
     if (!run) return this.#begin();
     this.#open(run);
-    if (options.predicts && !asked) this.#isPlaying = false;
+    if (options.predicts && !before?.options.predicts) this.#isPlaying = false;
     if (options.predicts) this.#skipToQuestion();
     else if (!this.#isPlaying) run.timeline.finish();
     this.#changed();
   }
 
   #begin(isPaused = false): void {
+    this.#hasChanged = false;
     const options = this.#readOptions();
     if (!options) return;
     let run: Run;
@@ -345,7 +354,7 @@ export class SapDemoElement extends LitElement {
     this.#hands.selection.clear();
     this.#guesses = new Guesses();
     this.#swapLog = new SwapLog();
-    const isStill = isPaused || this.hasAttribute("paused") || options.isStatic || options.predicts || motionQuery.matches;
+    const isStill = isPaused || isOn(this.getAttribute("paused")) || options.isStatic || options.predicts || motionQuery.matches;
     if (options.isStatic && (!options.predicts || asksOfScan(options))) run.timeline.finish();
     if (stop !== undefined) run.timeline.showStop(stop);
     this.#isPlaying = !isStill;
@@ -399,7 +408,11 @@ export class SapDemoElement extends LitElement {
     const run = this.#run;
     if (!run) return false;
     try {
-      if (this.#isPlaying) this.#isPlaying = run.playback.advance(ms * (this.#speed ?? run.options.speed), this.#listener);
+      if (this.#isPlaying) {
+        const goesOn = run.playback.advance(ms * (this.#speed ?? run.options.speed), this.#listener);
+        // A listener may have paused it.
+        this.#isPlaying &&= goesOn;
+      }
       this.#paint();
     } catch (error) {
       // Out of memory, at most. The other demos of the page go on.
@@ -412,6 +425,7 @@ export class SapDemoElement extends LitElement {
   }
 
   readonly #listener = {
+    isPlaying: (): boolean => this.#isPlaying,
     isHeld: (): boolean => this.#hands.isHolding,
     stopped: (events: readonly TraceEvent[]): void => this.#report(events),
     ticking: (): void => this.#hands.hold(),
@@ -437,6 +451,9 @@ export class SapDemoElement extends LitElement {
     return {
       get run() {
         return demo.#run;
+      },
+      get isPlaying() {
+        return demo.#isPlaying;
       },
       get isHeld() {
         return demo.#hands.isHolding;
@@ -515,7 +532,7 @@ export class SapDemoElement extends LitElement {
     const run = this.#run;
     if (!run?.options.predicts) return;
     const { timeline } = run;
-    for (let steps = 0; steps < MOST_SKIPPED && !this.#question; steps++) {
+    for (let steps = 0; steps < MOST_SKIPPED && !timeline.isOver && !this.#question; steps++) {
       if (!timeline.isDetected) this.#report(timeline.nextStop());
       else if (hasGuessed || run.options.isStatic) return;
       else run.nextDetection(this.#listener);

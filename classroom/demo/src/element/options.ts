@@ -159,6 +159,11 @@ export const booleans: ReadonlySet<Attribute> = new Set<Attribute>([
   "no-controls",
 ]);
 
+/** Whether the value of one of them says that it is there: `"false"` does not. */
+export function isOn(value: string | null): boolean {
+  return value !== null && value !== "false";
+}
+
 /**
  * Reads the attributes.
  *
@@ -168,7 +173,7 @@ export function readOptions(attribute: (name: Attribute) => string | null, progr
   const variantName = attribute("variant");
   const variant = variantName === null ? undefined : choose("variant", variants(), variantName);
   const get = (name: Attribute): string | null => attribute(name) ?? variant?.defaults[name] ?? null;
-  const has = (name: Attribute): boolean => get(name) !== null && get(name) !== "false";
+  const has = (name: Attribute): boolean => isOn(get(name));
   const strategy = choose("strategy", strategies, get("strategy") ?? "sorted-pairwise");
   const axis = get("axis") ?? "x";
   const height = has("strip") ? STRIP_HEIGHT : HEIGHT;

@@ -15,6 +15,8 @@ const MOST_MS = 6;
 /** What is told while time passes. */
 export interface Listener {
   stopped(events: readonly TraceEvent[]): void;
+  /** Whether it still plays: what is told may pause it. */
+  isPlaying(): boolean;
   /** Whether a hand holds a ball: then the world does not wait for what would be shown. */
   isHeld(): boolean;
   /** Before a tick: the last chance to put balls elsewhere. */
@@ -58,6 +60,7 @@ export class Playback {
       this.#spent -= needed;
       if (isDetected) this.tick(listener);
       else listener.stopped(timeline.nextStop());
+      if (timeline.isOver || !listener.isPlaying()) return true;
     }
     // What there was no time for is left out.
     this.#spent = 0;

@@ -1,4 +1,4 @@
-import { attributes, booleans } from "./options.js";
+import { attributes, booleans, isOn } from "./options.js";
 
 /** Makes every attribute a property as well, but for those that would hide one that elements have. */
 export function addProperties(prototype: HTMLElement): void {
@@ -9,7 +9,7 @@ export function addProperties(prototype: HTMLElement): void {
       configurable: true,
       get(this: HTMLElement) {
         const value = this.getAttribute(name);
-        return booleans.has(name) ? value !== null : value;
+        return booleans.has(name) ? isOn(value) : value;
       },
       set(this: HTMLElement, value: unknown) {
         if (value === null || value === undefined || value === false) this.removeAttribute(name);

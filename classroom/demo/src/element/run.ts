@@ -1,6 +1,6 @@
 import type { TraceEvent } from "../algorithms/trace.js";
 import type { DemoEvent, DemoState, Row } from "./types.js";
-import { hasFlags, shownKinds } from "./detection.js";
+import { areDetectionsKept, hasFlags, shownKinds } from "./detection.js";
 import { explain, type Explanation } from "./explain.js";
 import { namesOf } from "./names.js";
 import { describeEvent, type Known, summary } from "./narrate.js";
@@ -40,6 +40,14 @@ export class Run {
     return new Run(options, Timeline.at(options, shownKinds(options.decorations, options.detecting), ticks));
   }
 
+  /** Shows the same detections, at the same stop, under other options, if they change nothing but looks. */
+  shownUnder(options: Options): Run | undefined {
+    if (!isWorldKept(this.options, options) || !areDetectionsKept(this.options, options)) return undefined;
+    const run = new Run(options, this.timeline);
+    run.#answered = this.#answered;
+    return run;
+  }
+
   /** Goes on in the same world under other options, if they leave it as it was. This run is then over. */
   goOn(options: Options): Run | undefined {
     if (!isWorldKept(this.options, options)) return undefined;
@@ -55,7 +63,7 @@ export class Run {
   /** Plays on to the next tick that has a detection. */
   nextDetection(listener: Listener): void {
     do this.playback.tick(listener);
-    while (!this.timeline.hasDetection);
+    while (!this.timeline.isOver && !this.timeline.hasDetection);
   }
 
   get state(): DemoState {

@@ -4,7 +4,7 @@ import type { TraceEvent } from "../algorithms/trace.js";
 import { type Detection, isStart, newRunner, Oracle, oracleFor, stopsOf, TracedDetection } from "./detection.js";
 import type { Options } from "./options.js";
 import { ProgramDetection } from "./program.js";
-import type { ProgramEvent } from "./types.js";
+import type { DemoProgram, ProgramEvent } from "./types.js";
 import { boxesOf, sweptBoxes, World } from "./world.js";
 
 /** What is kept of a tick, to come back to it. */
@@ -19,8 +19,8 @@ interface Tick {
   readonly before: Runner | undefined;
   /** How many stops there are in it. */
   stops: number;
-  /** What a program did in it, once it has answered. */
-  reported?: readonly ProgramEvent[];
+  /** What a program did in it, or the promise of that, so that the program runs only once. */
+  reported?: ReturnType<DemoProgram>;
 }
 
 /** Which of the kept ticks is shown, which of its stops has been reached, and of each tick the number of stops: 0 without a detection. */
@@ -55,15 +55,15 @@ export function momentBefore({ at, stop, stops }: Kept): Moment | undefined {
 /** A stop by its index among the kept ones; 0 is the first. */
 export function momentAt({ stops }: Kept, place: number): Moment {
   let left = Math.max(0, Math.trunc(place));
-  let last = 0;
+  let last: number | undefined;
   for (const [index, count] of stops.entries()) {
     if (count === 0) continue;
-    last = index;
     // Between two detections there is no such thing as before the first stop.
-    if (left <= count && (left > 0 || index === 0)) return [index, left - 1];
+    if (left <= count && (left > 0 || last === undefined)) return [index, left - 1];
+    last = index;
     left -= count;
   }
-  return [last, Infinity];
+  return [last ?? 0, Infinity];
 }
 
 /** How many ticks a demo can go back: a quarter of a minute. */
@@ -97,6 +97,7 @@ export class Timeline {
   /** Where a program has not answered yet: the tick it was asked about, and the stop to show then. What is shown until then is the detection before. */
   #awaited: { readonly tick: Tick; stop: number } | undefined;
   #settled: Promise<void> = Promise.resolve();
+  #isOver = false;
   /** Called when a program has answered, with the events that are played at once, or has failed. */
   waiter: { answered(events: readonly TraceEvent[]): void; failed(error: unknown): void } | undefined;
 
@@ -202,6 +203,11 @@ export class Timeline {
   /** Resolves when it has, or has failed. */
   get settled(): Promise<void> {
     return this.#settled;
+  }
+
+  /** Whether it was ended: a listener may do that while time passes. */
+  get isOver(): boolean {
+    return this.#isOver;
   }
 
   /** Whether there is a detection at this very tick. */
@@ -322,6 +328,7 @@ export class Timeline {
   /** Ends this line of time, and hands over the world as it is shown. */
   release(): World {
     this.#bringWorld();
+    this.#isOver = true;
     this.#awaited = undefined;
     for (const tick of this.#ticks) this.#forget(tick);
     this.#detection?.free();
@@ -355,10 +362,13 @@ export class Timeline {
     const missedOf = (found: Uint32Array): Detection["missed"] => this.#missedAt(tick, found);
     this.#awaited = undefined;
     if (!program) return this.#show(new TracedDetection(runner, boxes, missedOf), tick);
-    const reported = tick.reported ?? program(boxes, tick.last && this.#boxes(tick.last));
-    if (!(reported instanceof Promise)) {
-      tick.reported = reported;
-      return this.#show(new ProgramDetection(reported, boxes, missedOf), tick);
+    const detectionOf = (events: readonly ProgramEvent[]): Detection => new ProgramDetection(events, boxes, missedOf);
+    try {
+      tick.reported ??= program(boxes, tick.last && this.#boxes(tick.last));
+      if (Array.isArray(tick.reported)) return this.#show(detectionOf(tick.reported), tick);
+    } catch (error) {
+      // Told like a rejection, when nothing is in the middle of a tick any more.
+      tick.reported = Promise.reject(error);
     }
     if (!this.#detection) this.#show(new ProgramDetection([], boxes, () => []), tick);
     tick.stops = 1;
@@ -366,17 +376,19 @@ export class Timeline {
     this.#awaited = awaited;
     // Meanwhile another tick may be shown, or another program asked.
     const isAwaited = (): boolean => this.#awaited === awaited;
-    this.#settled = reported.then(
-      (events) => {
+    this.#settled = Promise.resolve(tick.reported)
+      .then((events) => {
         tick.reported = events;
         if (!isAwaited()) return;
+        const detection = detectionOf(events);
         this.#awaited = undefined;
-        this.#show(new ProgramDetection(events, boxes, missedOf), tick);
+        this.#show(detection, tick);
         this.showStop(this.isStopless ? 0 : awaited.stop);
         this.waiter?.answered(this.detection.events.slice(1, this.position));
-      },
-      (error: unknown) => isAwaited() && this.waiter?.failed(error),
-    ) as Promise<void>;
+      })
+      .catch((error: unknown) => {
+        if (isAwaited()) this.waiter?.failed(error);
+      });
   }
 
   #show(detection: Detection, tick: Tick): void {

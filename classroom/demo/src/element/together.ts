@@ -7,6 +7,8 @@ import { type Kept, momentAt, momentBefore, type Progress, progressOf, type Time
 export interface Member {
   /** Until it has begun there is none. */
   readonly run: Run | undefined;
+  /** Whether it plays: all do, until one is paused. */
+  readonly isPlaying: boolean;
   /** Whether a hand holds one of its balls. */
   readonly isHeld: boolean;
   /** Lets time pass within the detection. */
@@ -61,7 +63,8 @@ export class Together {
     for (const member of members) if (!member.run?.timeline.isDetected || member.isHeld) member.advance(ms);
     if (!this.isDetected) return;
     this.#spent = Math.min(this.#spent + ms, 4 * MS_PER_TICK);
-    while (this.#spent >= MS_PER_TICK && this.isDetected) {
+    // A listener may pause them.
+    while (this.#spent >= MS_PER_TICK && this.isDetected && members.some(({ isPlaying }) => isPlaying)) {
       this.#spent -= MS_PER_TICK;
       this.#tickAll();
     }
