@@ -389,7 +389,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// same calls, the same ids, events and results, bit for bit.
     ///
     /// Takes O(n) time; about `2 * D * size_of::<T>() + 2` bytes for each body at rest, and nearly twice as many with
-    /// [`Report::Fat`], which adds its fat AABB. To go back a few frames, as
+    /// [`Report::Fat`](crate::Report::Fat), which adds its fat AABB. To go back a few frames, as
     /// rollback does, a clone is faster: see [`BroadPhase`]. Snapshots are for files and for other machines.
     ///
     /// ```
