@@ -150,23 +150,23 @@ impl Comparison<'_> {
             self.bar.inc(1);
         }
 
-        if matches!(self.kind, Kind::Pairs | Kind::Intervals) {
-            // Not the first call, which may have had to get its memory.
-            for library in running.iter().filter(|library| !library.rounds.is_empty()) {
-                let rounds: Vec<_> = library.rounds.iter().map(|&(_, time)| time).collect();
-                let took = Duration::from_nanos(median(&rounds) as u64);
-                slow.insert(self.key(library.info), (self.boxes, took));
-            }
-        }
         let own: HashMap<usize, f64> = running
             .iter()
             .find(|library| library.info.name == THIS_CRATE)
             .map(|library| library.rounds.iter().copied().collect())
             .unwrap_or_default();
-        let timed = running.into_iter().map(|library| Entry {
-            name: library.info.name.into(),
-            alternative: library.info.alternative,
-            outcome: Outcome::Timed(library.times(self.kind, &own)),
+        let timed = running.into_iter().map(|library| {
+            let times = library.times(self.kind, &own);
+            if !self.kind.tracks() {
+                // Not the first call, which may have had to get its memory.
+                let took = Duration::from_nanos(times.median_ns as u64);
+                slow.insert(self.key(library.info), (self.boxes, took));
+            }
+            Entry {
+                name: library.info.name.into(),
+                alternative: library.info.alternative,
+                outcome: Outcome::Timed(times),
+            }
         });
         let untimed = untimed.into_iter().map(|(info, why)| Entry {
             name: info.name.into(),

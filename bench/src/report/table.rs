@@ -16,7 +16,8 @@ pub const INTRODUCTION: &str = "\
 Made by `bench/report` from the files in `bench/results`; `bench/run` measures again.
 
 Lower times are better. The time to find all pairs starts with raw boxes and ends with pairs stored in memory. It is \
-the time of one thread unless the name says otherwise. A library is timed only if its pairs are exactly right, of four scenes of a kind or four frames. Each \
+the time of one thread unless the name says otherwise. A library is timed only if its pairs are exactly right, \
+of four scenes of a kind or four frames. Each \
 round runs every library once. A time is the median over the rounds. A ratio is the median over the rounds of a \
 library's time divided by the time of sweep-and-prune in the same round, so that whatever slows the machine in a \
 round slows both: a ratio of 2 means twice as slow as sweep-and-prune. Time that a library spends waiting for a \
