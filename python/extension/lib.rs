@@ -32,6 +32,8 @@ mod _native {
     #[pymodule_export]
     use super::ranks::ranks;
     #[pymodule_export]
+    use super::run::processors;
+    #[pymodule_export]
     use super::whole::take_ends;
     #[pymodule_export]
     use super::world::World;

@@ -187,6 +187,7 @@ fn pool() -> Option<Arc<ThreadPool>> {
 }
 
 /// The number of threads that can run at once. Cached, because the system call is slow.
+#[pyfunction]
 pub fn processors() -> usize {
     static PROCESSORS: OnceLock<usize> = OnceLock::new();
     *PROCESSORS.get_or_init(|| available_parallelism().map_or(1, usize::from))

@@ -16,7 +16,7 @@ import pytest
 from oracle import FLOATS, random_boxes
 
 import sweep_and_prune as sap
-from sweep_and_prune._arrays import processors
+from sweep_and_prune._native import processors
 
 
 @pytest.mark.parametrize("threads", [1, 2])

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import operator
-import os
 from collections.abc import Mapping
 from typing import Any, Protocol, Union
 
@@ -81,13 +80,6 @@ def thread_count(threads: object) -> int:
     if isinstance(threads, (int, np.integer)) and threads == -1:
         return _MAX_THREADS  # the compiled part takes no more than there are processors
     return whole(threads, "threads", 1, _MAX_THREADS, "-1 or ")
-
-
-def processors() -> int:
-    """How many processors this process may use."""
-    if hasattr(os, "sched_getaffinity"):  # not on macOS and Windows
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def whole(value: object, name: str, least: int, most: int, others: str = "") -> int:

@@ -10,11 +10,11 @@ from typing import Any, NamedTuple, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import processors, thread_count
+from ._arrays import thread_count
 from ._columns import group_codes, is_rounded
 from ._crs import difference
 from ._inputs import Raw, chosen_boxes, listed, named_column, raw_boxes
-from ._native import in_order
+from ._native import in_order, processors
 from ._overlaps import Overlaps, measure_overlaps
 from ._pairs import Progress, find_pairs_between
 from ._wrap import checked_wrap

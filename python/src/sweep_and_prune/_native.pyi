@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from ._arrays import Floats, Ids, Pairs
 
-__all__ = ["Finder", "World", "in_order", "nearest_of_rows", "ranks", "stop_threads", "take_ends"]
+__all__ = ["Finder", "World", "in_order", "nearest_of_rows", "processors", "ranks", "stop_threads", "take_ends"]
 __all__ += ["read_cells", "read_ends_of_variants", "read_lines", "read_names", "read_numbers"]
 
 _Words = tuple[int, int, int, bool]
@@ -101,4 +101,5 @@ def read_cells(
 def read_ends_of_variants(
     text: bytes, offsets: NDArray[np.int64], separator: int, is_csv: bool
 ) -> NDArray[np.int64] | None: ...
+def processors() -> int: ...
 def stop_threads() -> None: ...

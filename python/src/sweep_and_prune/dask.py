@@ -28,9 +28,9 @@ from typing import Any, NamedTuple, Union
 
 import numpy as np
 
-from ._arrays import processors
 from ._crs import difference
 from ._inputs import checked_format
+from ._native import processors
 from ._partitioned.boxes import InvalidRowError, list_files
 from ._partitioned.dataset import DatasetError, Manifest, read_manifest
 from ._partitioned.files import checked_path

@@ -10,8 +10,8 @@ from contextlib import contextmanager, suppress
 from threading import Event, Thread
 from typing import Any, NamedTuple
 
-from .._arrays import processors
 from .._errors import SweepAndPruneError
+from .._native import processors
 from . import uninterrupted
 from .dataset import DatasetError
 from .tasks import guarded
