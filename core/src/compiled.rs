@@ -33,14 +33,15 @@ fn call_all<const D: usize, T: Scalar>(
     let (aabb, id, point) = (boxes[0], ids[0], boxes[0].min);
     let _ = (validate(boxes), find_pairs(boxes), find_pairs_between(boxes, boxes));
     let mut finder = PairFinder::<D, T>::new();
-    let _ = (count_pairs(boxes), finder.find(boxes).is_ok());
+    let _ = (count_pairs(boxes), finder.find(boxes).is_ok(), finder.search(boxes).counts());
     let _ = finder.find_between(boxes, boxes).is_ok();
     let _ = finder.search(boxes).for_each_chunk(|_| ControlFlow::Break(()));
     let _ = (world.insert_with(aabb, Filter::ALL), world.insert_many(boxes, Filter::ALL));
     let _ = (world.set(id, aabb), world.set_many(ids, boxes), world.set_swept(id, aabb, aabb));
     let _ = (world.teleport(id, aabb), world.shift(point), world.set_filter(id, Filter::ALL));
     let _ = (world.remove_many(ids), world.update().is_empty(), world.pairs().len());
-    let _ = (world.pairs_of(id).is_ok(), world.snapshot(), world.state_hash());
+    let _ = (world.pairs_of(id).is_ok(), world.pairs_by_body());
+    let _ = (world.snapshot(), world.state_hash());
     let _ = (world.snapshot_into(&mut alloc::vec::Vec::new()), world.prepare_queries());
     let _ = (world.set_enabled(id, false), world.exclude_pair(id, id), world.is_excluded(id, id));
     let _ = (BroadPhase::<D, T>::from_snapshot(&[]), world.clear());

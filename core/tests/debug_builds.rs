@@ -24,6 +24,7 @@ fn call_all<const D: usize, T: Scalar>() -> Result<(), Error> {
     assert_eq!(finder.find(&boxes)?.len(), 1);
     assert_eq!(finder.find_between(&boxes, &boxes)?.len(), 4);
     assert_eq!(finder.search(&boxes).count()?, 1);
+    assert_eq!(finder.search(&boxes).counts()?, [1, 1]);
     assert_eq!(finder.search(&boxes).against(&boxes).pairs()?.len(), 4);
     let go_on = |_: f64| ControlFlow::Continue(());
     let mut chunks = 0;
@@ -57,6 +58,7 @@ fn call_all<const D: usize, T: Scalar>() -> Result<(), Error> {
     assert!(world.prepared_queries().is_some());
     assert_eq!(world.pairs().len(), world.pairs_unsorted().count());
     assert!(world.pairs_of(id)?.len() > 0);
+    assert!(!world.pairs_by_body().is_empty());
 
     let cast = Cast::ray(at(-1.0), at(1.0), T::from_f64(9.0));
     let (mut lists, mut hit) = (Lists::new(), vec![]);
@@ -93,11 +95,12 @@ fn every_call_succeeds() {
 
 /// Where the library spends its time: a function that names one of these should be compiled with the library. What only
 /// makes or frees memory does not count.
-const TAKES_TIME: [&str; 15] = [
+const TAKES_TIME: [&str; 18] = [
     "::pairs::columns",
     "::pairs::driver",
     "::pairs::kernel",
     "::pairs::plan",
+    "::pairs::ranks",
     "::pairs::sort",
     "::pairs::sweep",
     "::world::finder",
@@ -109,6 +112,8 @@ const TAKES_TIME: [&str; 15] = [
     "::world::update",
     "as core::clone::Clone",
     "::run_cast",
+    "::by_slot",
+    ">>::counts",
 ];
 
 fn only_makes_or_frees(name: &str) -> bool {

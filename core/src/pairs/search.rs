@@ -180,6 +180,7 @@ impl<'f, 'b, const D: usize, T: Scalar> Search<'f, 'b, D, T> {
     /// assert_eq!(finder.search(&genes).counts()?, [0, 0]);
     /// # Ok::<(), sweep_and_prune::Error>(())
     /// ```
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn counts(self) -> Result<Vec<u32>, Error> {
         let copied = self.sets;
         let sets = copied.as_slice();

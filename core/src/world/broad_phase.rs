@@ -284,6 +284,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// assert_eq!(&touching[ids[1].slot() as usize], [ids[0], ids[2]]);
     /// # Ok::<(), sweep_and_prune::Error>(())
     /// ```
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     pub fn pairs_by_body(&self) -> Lists<ProxyId> {
         let (ends, others) = self.tracking.candidates.by_slot(&self.bodies.slots);
         Lists::from_parts(ends, others)
