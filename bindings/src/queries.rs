@@ -113,6 +113,30 @@ impl<I: Id> Answer<I> {
         self.ends.clear();
     }
 
+    /// Gives up what was found, and its memory.
+    fn forget(&mut self) {
+        *self = Self {
+            ids: Vec::new(),
+            values: Vec::new(),
+            faces: Vec::new(),
+            ends: Vec::new(),
+            found: Lists::new(),
+        };
+    }
+
+    /// Reserves memory for this many ids, values, faces and ends.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    #[inline(never)]
+    fn reserve(&mut self, [ids, values, faces, ends]: [usize; 4]) -> Result<(), Error> {
+        let are_reserved = self.ids.try_reserve(ids).is_ok()
+            && self.values.try_reserve(values).is_ok()
+            && self.faces.try_reserve(faces).is_ok()
+            && self.ends.try_reserve(ends).is_ok();
+        if are_reserved { Ok(()) } else { Err(Error::OutOfMemory) }
+    }
+
     #[inline(never)]
     fn push(&mut self, id: ProxyId, value: f64) {
         self.ids.push(I::from_proxy(id));
@@ -133,6 +157,9 @@ impl<I: Id> Answer<I> {
 }
 
 /// Answers the queries whose numbers follow each other; what is left over is not read.
+///
+/// # Errors
+/// Those of the core; [`Error::OutOfMemory`] if the answer does not fit: then it keeps no memory.
 pub(crate) fn ask<const D: usize, T: Scalar, I: Id>(
     queries: Queries<'_, D, T>,
     query: Query,
@@ -140,16 +167,30 @@ pub(crate) fn ask<const D: usize, T: Scalar, I: Id>(
     answer: &mut Answer<I>,
 ) -> Result<(), Error> {
     answer.clear();
+    let result = try_to_ask(queries, query, numbers, answer);
+    if result == Err(Error::OutOfMemory) {
+        answer.forget();
+    }
+    result
+}
+
+fn try_to_ask<const D: usize, T: Scalar, I: Id>(
+    queries: Queries<'_, D, T>,
+    query: Query,
+    numbers: &[f64],
+    answer: &mut Answer<I>,
+) -> Result<(), Error> {
     let rows = Rows { numbers, width: query.width(D) };
     let lists = &mut answer.found;
     match query {
-        Query::Overlapping => queries.overlapping_many(&rows.read(aabb::<D, T, f64>), lists)?,
-        Query::Containing => queries.containing_many(&rows.read(point::<D, T, f64>), lists)?,
-        Query::Within => queries.within_many(&rows.read(sphere::<D, T>), lists)?,
+        Query::Overlapping => queries.overlapping_many(&rows.read(aabb::<D, T, f64>)?, lists)?,
+        Query::Containing => queries.containing_many(&rows.read(point::<D, T, f64>)?, lists)?,
+        Query::Within => queries.within_many(&rows.read(sphere::<D, T>)?, lists)?,
         Query::Cast | Query::CastEntering => {
-            let casts = casts(&rows, query == Query::CastEntering);
+            let casts = casts(&rows, query == Query::CastEntering)?;
             let mut hits = Vec::new();
             queries.cast_many(&casts, &mut hits)?;
+            answer.reserve([hits.len(); 4])?;
             for hit in hits {
                 if let Some(hit) = hit {
                     answer.push_hit(&hit);
@@ -159,17 +200,21 @@ pub(crate) fn ask<const D: usize, T: Scalar, I: Id>(
             return Ok(());
         }
         Query::CastAll | Query::CastAllEntering => {
-            let casts = casts(&rows, query == Query::CastAllEntering);
+            let casts = casts(&rows, query == Query::CastAllEntering)?;
             let mut lists = Lists::new();
             queries.cast_all_many(&casts, &mut lists)?;
+            let hits = lists.values().len();
+            answer.reserve([hits, hits, hits, lists.len()])?;
             lists.values().iter().for_each(|hit| answer.push_hit(hit));
             answer.ends.extend_from_slice(lists.ends());
             return Ok(());
         }
         Query::Nearest { k, max_distance } => {
-            let points = rows.read(point::<D, T, f64>);
+            let points = rows.read(point::<D, T, f64>)?;
             let mut nearest = Lists::new();
             queries.nearest_many(&points, k, max_distance, &mut nearest)?;
+            let found = nearest.values().len();
+            answer.reserve([found, found, 0, nearest.len()])?;
             for near in nearest.values() {
                 answer.push(near.id, near.distance_squared);
             }
@@ -177,10 +222,12 @@ pub(crate) fn ask<const D: usize, T: Scalar, I: Id>(
             return Ok(());
         }
     }
-    answer.ids.extend(lists.values().iter().map(|&id| I::from_proxy(id)));
-    answer.ends.extend_from_slice(lists.ends());
-    if lists.values().len() > MOST_KEPT {
-        *lists = Lists::new();
+    let [bodies, queries] = [lists.values().len(), lists.len()];
+    answer.reserve([bodies, 0, 0, queries])?;
+    answer.ids.extend(answer.found.values().iter().map(|&id| I::from_proxy(id)));
+    answer.ends.extend_from_slice(answer.found.ends());
+    if bodies > MOST_KEPT {
+        answer.found = Lists::new();
     }
     Ok(())
 }
@@ -194,9 +241,12 @@ struct Rows<'a> {
 impl Rows<'_> {
     /// Not inline, and with a function pointer: a WebAssembly file has this for each type of box.
     #[inline(never)]
-    fn read<Q>(&self, make: fn(&[f64]) -> Q) -> Vec<Q> {
+    fn read<Q>(&self, make: fn(&[f64]) -> Q) -> Result<Vec<Q>, Error> {
         let count = self.numbers.len() / self.width;
-        (0..count).map(|index| make(&self.numbers[index * self.width..])).collect()
+        let mut queries = Vec::new();
+        queries.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
+        queries.extend((0..count).map(|index| make(&self.numbers[index * self.width..])));
+        Ok(queries)
     }
 }
 
@@ -204,10 +254,13 @@ fn sphere<const D: usize, T: Scalar>(row: &[f64]) -> ([T; D], T) {
     (point(row), T::from_f64(row[D]))
 }
 
-fn casts<const D: usize, T: Scalar>(rows: &Rows<'_>, are_entering: bool) -> Vec<Cast<D, T>> {
-    let mut casts = rows.read(cast::<D, T>);
+fn casts<const D: usize, T: Scalar>(
+    rows: &Rows<'_>,
+    are_entering: bool,
+) -> Result<Vec<Cast<D, T>>, Error> {
+    let mut casts = rows.read(cast::<D, T>)?;
     casts.iter_mut().for_each(|cast| cast.ignores_touching = are_entering);
-    casts
+    Ok(casts)
 }
 
 fn cast<const D: usize, T: Scalar>(row: &[f64]) -> Cast<D, T> {

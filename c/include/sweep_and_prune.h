@@ -67,7 +67,7 @@ enum sap_status
     SAP_ERROR_INVALID_SNAPSHOT = 9,
     /// More boxes than 2^32 - 1, which is how many one set can have.
     SAP_ERROR_TOO_MANY_BOXES = 10,
-    /// The pairs, or the memory for finding them, do not fit. Counting and streaming need less.
+    /// The pairs, the memory for finding them, or the answer to a query do not fit. Counting and streaming need less.
     SAP_ERROR_OUT_OF_MEMORY = 11,
     /// The threads that a handle should have could not be started.
     SAP_ERROR_THREADS = 12,
@@ -104,19 +104,23 @@ typedef struct sap_finder3d sap_finder3d;
 typedef struct sap_finder3f sap_finder3f;
 
 /// The persistent broad phase: a set of bodies, each with a box, that reports which overlaps begin and which end. The same
-/// calls give the same results on every platform. Where memory runs out the program ends.
+/// calls give the same results on every platform. Where memory runs out the program ends, except in an update whose pairs do not
+/// fit and in a query whose answer does not: these return `SAP_ERROR_OUT_OF_MEMORY`.
 typedef struct sap_world2d sap_world2d;
 
 /// The persistent broad phase: a set of bodies, each with a box, that reports which overlaps begin and which end. The same
-/// calls give the same results on every platform. Where memory runs out the program ends.
+/// calls give the same results on every platform. Where memory runs out the program ends, except in an update whose pairs do not
+/// fit and in a query whose answer does not: these return `SAP_ERROR_OUT_OF_MEMORY`.
 typedef struct sap_world2f sap_world2f;
 
 /// The persistent broad phase: a set of bodies, each with a box, that reports which overlaps begin and which end. The same
-/// calls give the same results on every platform. Where memory runs out the program ends.
+/// calls give the same results on every platform. Where memory runs out the program ends, except in an update whose pairs do not
+/// fit and in a query whose answer does not: these return `SAP_ERROR_OUT_OF_MEMORY`.
 typedef struct sap_world3d sap_world3d;
 
 /// The persistent broad phase: a set of bodies, each with a box, that reports which overlaps begin and which end. The same
-/// calls give the same results on every platform. Where memory runs out the program ends.
+/// calls give the same results on every platform. Where memory runs out the program ends, except in an update whose pairs do not
+/// fit and in a query whose answer does not: these return `SAP_ERROR_OUT_OF_MEMORY`.
 typedef struct sap_world3f sap_world3f;
 
 /// Which bodies may pair. Two bodies pair if their boxes overlap, not both are static, and: they have the same group, which is

@@ -34,7 +34,7 @@ pub enum sap_status {
     SAP_ERROR_INVALID_SNAPSHOT = 9,
     /// More boxes than 2^32 - 1, which is how many one set can have.
     SAP_ERROR_TOO_MANY_BOXES = 10,
-    /// The pairs, or the memory for finding them, do not fit. Counting and streaming need less.
+    /// The pairs, the memory for finding them, or the answer to a query do not fit. Counting and streaming need less.
     SAP_ERROR_OUT_OF_MEMORY = 11,
     /// The threads that a handle should have could not be started.
     SAP_ERROR_THREADS = 12,

@@ -12,7 +12,8 @@ use crate::memory::{array, list, optional, optional_place, optional_places, plac
 use crate::world::World;
 
 /// The persistent broad phase: a set of bodies, each with a box, that reports which overlaps begin and which end. The same
-/// calls give the same results on every platform. Where memory runs out the program ends.
+/// calls give the same results on every platform. Where memory runs out the program ends, except in an update whose pairs do not
+/// fit and in a query whose answer does not: these return `SAP_ERROR_OUT_OF_MEMORY`.
 pub struct sap_world3f {
     _state: World<3, f32>,
 }

@@ -78,8 +78,8 @@ pub enum Error {
         /// How many boxes were passed.
         count: usize,
     },
-    /// The pairs, or the memory for finding them, do not fit. The finder keeps none of the pairs and
-    /// can be used again. Counting or streaming the pairs needs less memory.
+    /// The pairs, the memory for finding them, or the answer to queries do not fit. A finder keeps none of the pairs, a world is
+    /// as before, and both can be used again. Counting or streaming pairs, or fewer queries at a time, need less memory.
     OutOfMemory,
     /// The progress callback ended the search: see [`Search::progress`](crate::Search::progress).
     Cancelled,
@@ -172,8 +172,8 @@ impl fmt::Display for Error {
                 write!(f, "{count} boxes are too many: one set can hold {limit}, so split it")
             }
             Error::OutOfMemory => f.write_str(
-                "out of memory: the pairs of these boxes do not fit; count or stream the pairs, or \
-                 pass fewer boxes",
+                "out of memory: the pairs, or the answer to these queries, do not fit; count or stream the \
+                 pairs, or pass fewer boxes",
             ),
             Error::Cancelled => f.write_str("cancelled: the progress callback ended the search"),
             Error::StaleProxy { index, id } => write!(

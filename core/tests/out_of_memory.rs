@@ -1,8 +1,8 @@
 //! Memory that runs out at any point of any call: an allocator refuses the first, second, third ... allocation of a call and
 //! all after it.
 //!
-//! A finder on one thread returns an error each time, and its next search is right. Other calls end the program as Rust's
-//! collections do, so each of them is made in a process of its own.
+//! A finder on one thread and queries return an error each time, and the next search or query is right. Other calls end the
+//! program as Rust's collections do, so each of them is made in a process of its own.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::fmt::Debug;
@@ -11,7 +11,7 @@ use std::process::Command;
 use std::sync::atomic::{AtomicIsize, Ordering};
 
 use sweep_and_prune::{
-    Aabb, BroadPhase, Error, Filter, PairFinder, ProxyId, count_pairs, find_pairs,
+    Aabb, BroadPhase, Cast, Error, Filter, Lists, PairFinder, ProxyId, count_pairs, find_pairs,
     find_pairs_between,
 };
 use sweep_and_prune_scenes::{Random, Scene, brute_force};
@@ -151,6 +151,82 @@ fn draw(random: &mut Random) -> Aabb<2> {
     Aabb::new(at.map(|at| at as f32), at.map(|at| at as f32 + 0.1))
 }
 
+/// Asks with 0, 1, 2 ... allocations until that are enough. Where the answer does not fit, there are no lists, and the same
+/// query is answered right with memory. Returns how many allocations were enough.
+fn answers_or_fails_cleanly<V: Debug + PartialEq>(
+    ask: impl Fn(&mut Lists<V>) -> Result<(), Error>,
+) -> usize {
+    let mut expected = Lists::new();
+    ask(&mut expected).unwrap();
+    assert!(!expected.values().is_empty());
+    for allocations in 0.. {
+        let mut lists = Lists::new();
+        let (end, is_refused) = with_allocations(allocations, || ask(&mut lists));
+        match end {
+            Ok(()) => assert!(lists == expected, "{allocations} allocations"),
+            Err(error) => {
+                assert!(is_refused && error == Error::OutOfMemory, "{error}");
+                assert!(lists.is_empty() && lists.values().is_empty());
+            }
+        }
+        if !is_refused {
+            return allocations;
+        }
+        ask(&mut lists).unwrap();
+        assert!(lists == expected, "after {allocations} allocations");
+    }
+    unreachable!()
+}
+
+/// One test, since the allocator refuses all threads.
+#[test]
+#[ignore = "run by the test below, in a process of its own"]
+fn each_query() {
+    let (mut world, _, mut random) = world();
+    let queries = world.queries();
+    let areas: Vec<_> = (0..30).map(|_| draw(&mut random)).collect();
+    let points: Vec<_> = areas.iter().map(|area| area.min).collect();
+    let spheres: Vec<_> = points.iter().map(|&center| (center, 0.2)).collect();
+    let casts: Vec<_> = points.iter().map(|&from| Cast::ray(from, [1.0, 0.5], 9.0)).collect();
+    let mut allocations = [
+        answers_or_fails_cleanly(|lists| queries.overlapping_many(&areas, lists)),
+        answers_or_fails_cleanly(|lists| queries.containing_many(&points, lists)),
+        answers_or_fails_cleanly(|lists| queries.within_many(&spheres, lists)),
+        answers_or_fails_cleanly(|lists| queries.nearest_many(&points, 20, 9.0, lists)),
+        answers_or_fails_cleanly(|lists| queries.cast_all_many(&casts, lists)),
+    ]
+    .to_vec();
+    for allocations in 0.. {
+        let ask = || queries.cast_many(&casts, &mut Vec::new());
+        let (end, is_refused) = with_allocations(allocations, ask);
+        assert_eq!(end, if is_refused { Err(Error::OutOfMemory) } else { Ok(()) });
+        if !is_refused {
+            break;
+        }
+    }
+
+    // All at once: found from scratch, among sorted boxes, and after some have changed.
+    let boxes: Vec<_> = (0..33_000).map(|_| draw_small(&mut random)).collect();
+    let areas: Vec<_> = (0..8_400).map(|_| draw_small(&mut random)).collect();
+    let points: Vec<_> = areas.iter().map(|area| area.min).collect();
+    let mut world = BroadPhase::new();
+    let ids = world.insert_many(&boxes, Filter::ALL).unwrap();
+    for _ in 0..3 {
+        let queries = world.queries();
+        allocations.push(answers_or_fails_cleanly(|lists| queries.overlapping_many(&areas, lists)));
+        allocations.push(answers_or_fails_cleanly(|lists| queries.containing_many(&points, lists)));
+        world.queries().overlapping_many(&areas, &mut Lists::new()).unwrap();
+        world.set_many(&ids[..50], &areas[..50]).unwrap();
+    }
+    assert!(allocations.iter().all(|&count| count > 1), "{allocations:?}");
+    println!("each query passed after {allocations:?} allocations");
+}
+
+fn draw_small(random: &mut Random) -> Aabb<2> {
+    let min = random.point::<2>().map(|at| at as f32);
+    Aabb::new(min, min.map(|at| at + 0.01))
+}
+
 /// A call by its name, and whether its result is right.
 fn call(name: &str, allocations: usize) -> bool {
     let (mut world, ids, mut random) = world();
@@ -170,7 +246,7 @@ fn call(name: &str, allocations: usize) -> bool {
         "set_swept" => world.set_swept(ids[0], area, area).unwrap(),
         "set_filter" => world.set_filter(ids[0], Filter::STATIC).unwrap(),
         "remove_many" => world.remove_many(&ids[5..80]).unwrap(),
-        "queries" => found = world.queries().overlapping(&area).unwrap().len(),
+        "queries" => world.prepare_queries(),
         "snapshot" => found = world.snapshot().len(),
         "from_snapshot" => copy = Some(BroadPhase::<2>::from_snapshot(&bytes).unwrap()),
         "clone" => copy = Some(world.clone()),
@@ -222,6 +298,12 @@ fn run(test: &str, environment: &[(&str, String)]) -> (std::process::Output, Str
 fn a_search_without_memory_returns_an_error_and_the_next_one_is_right() {
     let (out, said) = run("each_search", &[]);
     assert!(out.status.success() && said.contains("each search passed"), "{said}");
+}
+
+#[test]
+fn a_query_without_memory_returns_an_error_and_the_next_one_is_right() {
+    let (out, said) = run("each_query", &[]);
+    assert!(out.status.success() && said.contains("each query passed"), "{said}");
 }
 
 #[test]

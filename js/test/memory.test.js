@@ -91,6 +91,24 @@ test("a crowd whose pairs do not fit leaves the world as it was", () => {
   world.free();
 });
 
+test("answers to queries that do not fit leave the world as it was", () => {
+  const world = new BroadPhase({ dimensions: 1 });
+  const ids = world.insertMany(new Float32Array(2 * 24_000));
+  const hash = world.stateHash();
+  const points = new Float32Array(24_000); // 576 million answers: 4.6 GB
+  for (const ask of [
+    () => world.overlappingMany(new Float32Array(2 * 24_000)),
+    () => world.containingMany(points),
+    () => world.withinMany(points, 1),
+    () => world.nearestMany(points, 24_000),
+  ]) {
+    assert.throws(ask, OutOfMemoryError);
+    assert.equal(world.stateHash(), hash);
+    assert.deepEqual(world.containing(0), [...ids]);
+  }
+  world.free();
+});
+
 test("changes for which JavaScript has no memory come with the next update", () => {
   const world = new BroadPhase({ dimensions: 1 });
   const still = world.insert(0, 1);

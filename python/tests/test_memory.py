@@ -73,6 +73,35 @@ def test_a_crowd_whose_pairs_do_not_fit_leaves_the_world_as_it_was() -> None:
     assert done.stdout.splitlines() == wanted, done.stderr
 
 
+QUERIES = """
+import resource
+import numpy as np
+import sweep_and_prune as sap
+resource.setrlimit(resource.RLIMIT_AS, (2 << 30, 2 << 30))
+world = sap.BroadPhase(2)
+ids = world.insert_many(np.tile([0, 0, 1, 1], (30_000, 1)))
+points = np.zeros((20_000, 2))  # 600 million answers: 4.8 GB
+for ask in (
+    lambda: world.overlapping_many(np.tile(points, 2)),
+    lambda: world.containing_many(points),
+    lambda: world.within_many(points, np.ones(20_000)),
+    lambda: world.nearest_many(points, 30_000),
+):
+    try:
+        ask()
+    except MemoryError as error:
+        print("memory" in str(error))
+    found = world.overlapping([0, 0, 0, 0])
+    print((found == ids).all())
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="memory is limited in the way of Linux")
+def test_answers_to_queries_that_do_not_fit_are_an_error_after_which_one_can_ask_again() -> None:
+    done = subprocess.run([sys.executable, "-c", QUERIES], capture_output=True, text=True)
+    assert done.stdout.splitlines() == ["True", "True"] * 4, done.stderr
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="memory is read in the way of Linux")
 def test_memory_comes_back() -> None:
     def resident() -> int:

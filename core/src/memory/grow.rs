@@ -2,6 +2,7 @@
 
 use alloc::collections::TryReserveError;
 use alloc::vec::Vec;
+use core::ops::ControlFlow;
 
 use super::pages::enlarge_pages;
 use crate::Error;
@@ -51,6 +52,16 @@ pub fn reserve_for<V>(table: &mut Vec<V>, count: usize) -> Result<(), OutOfMemor
         enlarge_pages(table);
     }
     Ok(())
+}
+
+/// Appends an item. Breaks, and the table is as it was, if there is no memory for it.
+#[inline]
+pub fn push<V>(table: &mut Vec<V>, item: V) -> ControlFlow<()> {
+    if table.len() == table.capacity() && table.try_reserve(1).is_err() {
+        return ControlFlow::Break(());
+    }
+    table.push(item);
+    ControlFlow::Continue(())
 }
 
 /// Reserves capacity for `more` items, and an eighth of all more, on large pages where they are many: random access to many

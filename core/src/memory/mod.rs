@@ -8,7 +8,7 @@ mod grow;
 mod pages;
 mod prefetch;
 
-pub use grow::{OutOfMemory, grow, grow_to, only_item, reserve, reserve_for};
+pub use grow::{OutOfMemory, grow, grow_to, only_item, push, reserve, reserve_for};
 pub use prefetch::{
     prefetch, prefetch_ahead, prefetch_item, prefetch_pays, prefetch_range, preload,
 };

@@ -31,8 +31,9 @@ use crate::{Aabb, Error, Scalar};
 ///
 /// The same calls give the same results, bit for bit, on every platform
 /// (but for the order of [`pairs_unsorted`](Self::pairs_unsorted) in WebAssembly). A call that returns an error
-/// changes nothing. Where memory runs out the program ends, as it does when a collection cannot grow; an update that finds
-/// more pairs than fit into memory is survived by [`try_update`](Self::try_update).
+/// changes nothing. Where memory runs out the program ends, as it does when a collection cannot grow; but an update that finds
+/// more pairs than fit into memory is survived by [`try_update`](Self::try_update), and a query whose answer does not fit
+/// returns [`Error::OutOfMemory`].
 ///
 /// ```
 /// use sweep_and_prune::{Aabb, BroadPhase};

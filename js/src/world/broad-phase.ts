@@ -29,7 +29,8 @@ import { type Box, type BroadPhaseOptions, type Changes, type Corners, type Inse
  * ```
  *
  * The same calls give the same results on every machine. A call that throws changes nothing, with one
- * exception: a `BroadPhase` that runs out of memory is freed.
+ * exception: a `BroadPhase` that runs out of memory is freed, unless it was the pairs of an update or the answer to queries
+ * that did not fit.
  */
 export class BroadPhase<D extends Dimensions = Dimensions, Data = unknown> extends Batches<D> {
   /** What was given with the bodies, by id. */

@@ -2,6 +2,7 @@
 
 use super::lists::Lists;
 use super::sorted_bodies::SortedBodies;
+use crate::memory::{OutOfMemory, reserve_for};
 use crate::pairs::PairFinder;
 use crate::world::bodies::{Bodies, ProxyId, Slots};
 use crate::{Aabb, Scalar};
@@ -48,19 +49,22 @@ pub fn list<const D: usize, T: Scalar>(
     }
     let Some(mut pairs) = found else { return false };
     pairs.retain(|&[_, body]| is_visible(body));
-    place(&pairs, areas.len(), &bodies.slots, lists);
-    true
+    place(&pairs, areas.len(), &bodies.slots, lists).is_ok()
 }
 
 /// Lists for each of this many boxes the bodies of its pairs, each of a box and a body.
+///
+/// # Errors
+/// [`OutOfMemory`]: then the lists are of no use.
 #[inline(never)]
 fn place(
     pairs: &[[u32; 2]],
     areas: usize,
     slots: &Slots,
     Lists { ends, values }: &mut Lists<ProxyId>,
-) {
+) -> Result<(), OutOfMemory> {
     ends.clear();
+    reserve_for(ends, areas + 1)?;
     ends.resize(areas + 1, 0);
     for &[area, _] in pairs {
         ends[area as usize + 1] += 1;
@@ -69,6 +73,7 @@ fn place(
         ends[area] += ends[area - 1];
     }
     values.clear();
+    reserve_for(values, pairs.len())?;
     values.resize(pairs.len(), ProxyId::from_bits(0));
     // Where each list begins becomes where it ends.
     for &[area, body] in pairs {
@@ -77,4 +82,5 @@ fn place(
         *at += 1;
     }
     ends.pop();
+    Ok(())
 }

@@ -8,6 +8,7 @@ use super::heap::{Ranked, rise, sort};
 use super::lists::Lists;
 use super::math::{Fault, check_each, fault_in, is_finite, is_length};
 use super::region::Queries;
+use crate::memory::{push, reserve_for};
 use crate::world::bodies::ProxyId;
 use crate::{Aabb, Error, Scalar};
 
@@ -211,13 +212,14 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     ) -> Result<(), Error> {
         check_each(casts, Cast::fault)?;
         hits.clear();
+        reserve_for(hits, casts.len())?;
         hits.extend(casts.iter().map(|cast| self.first_hit(cast)));
         Ok(())
     }
 
     fn first_hit(&self, cast: &Cast<D, T>) -> Option<Hit<D, T>> {
         let mut best: Option<Hit<D, T>> = None;
-        self.run_cast(cast, |hit| {
+        let _ = self.run_cast(cast, |hit| {
             if best.is_none_or(|best| hit.rank() < best.rank()) {
                 best = Some(hit);
             }
@@ -259,18 +261,18 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
         lists: &mut Lists<Hit<D, T>>,
     ) -> Result<(), Error> {
         check_each(casts, Cast::fault)?;
-        lists.clear();
-        for cast in casts {
-            let start = lists.values.len();
+        lists.replace(casts, |cast, hits| {
+            let start = hits.len();
             self.run_cast(cast, |hit| {
-                lists.values.push(hit);
-                rise(&mut lists.values[start..]);
+                if push(hits, hit).is_break() {
+                    return ControlFlow::Break(());
+                }
+                rise(&mut hits[start..]);
                 ControlFlow::Continue(f64::INFINITY)
-            });
-            sort(&mut lists.values[start..]);
-            lists.end();
-        }
-        Ok(())
+            })?;
+            sort(&mut hits[start..]);
+            ControlFlow::Continue(())
+        })
     }
 
     /// Calls `visit` with what a ray or a moving box hits, nearer parts of the world roughly first.
@@ -284,7 +286,8 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
         mut visit: impl FnMut(Hit<D, T>) -> ControlFlow<(), f64>,
     ) -> Result<(), Error> {
         check_each(core::slice::from_ref(cast), Cast::fault)?;
-        self.run_cast(cast, &mut visit as &mut dyn FnMut(_) -> _);
+        // The visitor knows whether it stopped.
+        let _ = self.run_cast(cast, &mut visit as &mut dyn FnMut(_) -> _);
         Ok(())
     }
 
@@ -293,7 +296,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
         &self,
         cast: &Cast<D, T>,
         mut visit: impl FnMut(Hit<D, T>) -> ControlFlow<(), f64>,
-    ) {
+    ) -> ControlFlow<()> {
         // The visitor lowers it.
         let limit = Cell::new(cast.limit.to_f64());
         let touches = |aabb: &Aabb<D, T>| cast.touches(aabb, limit.get());
@@ -309,7 +312,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
                 }
             }
             ControlFlow::Continue(())
-        });
+        })
     }
 
     fn hit(&self, cast: &Cast<D, T>, index: u32, t: f64) -> Hit<D, T> {

@@ -1,7 +1,10 @@
 //! Lists of lists, as one.
 
 use alloc::vec::Vec;
-use core::ops::Index;
+use core::ops::{ControlFlow, Index};
+
+use crate::Error;
+use crate::memory::reserve_for;
 
 /// The results of many queries, a list for each, or the pairs of each body. Passed to queries again, they keep their memory.
 ///
@@ -34,15 +37,30 @@ impl<V> Lists<V> {
         Self { ends, values }
     }
 
-    /// Removes all lists and keeps the memory.
-    pub(super) fn clear(&mut self) {
-        self.ends.clear();
-        self.values.clear();
-    }
-
-    /// Ends the list of the values that were added since the last one.
-    pub(super) fn end(&mut self) {
-        self.ends.push(self.values.len());
+    /// Replaces the lists by one for each query, whose values `list` appends.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`] if `list` breaks, or there is no memory for a number for each query: then there are no lists, and
+    /// no memory is kept.
+    pub(super) fn replace<Q>(
+        &mut self,
+        queries: &[Q],
+        mut list: impl FnMut(&Q, &mut Vec<V>) -> ControlFlow<()>,
+    ) -> Result<(), Error> {
+        let Self { ends, values } = self;
+        ends.clear();
+        values.clear();
+        let fits = reserve_for(ends, queries.len()).is_ok()
+            && queries.iter().all(|query| {
+                let end = list(query, values);
+                ends.push(values.len());
+                end.is_continue()
+            });
+        if fits {
+            return Ok(());
+        }
+        *self = Self::new();
+        Err(Error::OutOfMemory)
     }
 
     /// How many lists there are: one a query or slot.

@@ -8,6 +8,7 @@ use super::heap::{Ranked, rise, sink, sort};
 use super::lists::Lists;
 use super::math::{check_each, distance_squared, fault_in, is_finite, is_length};
 use super::region::Queries;
+use crate::memory::push;
 use crate::world::bodies::ProxyId;
 use crate::{Aabb, Error, Scalar};
 
@@ -76,27 +77,25 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     ) -> Result<(), Error> {
         check_each(&[max_distance], |limit| fault_in("max_distance", &[*limit], is_length))?;
         check_each(points, |point| fault_in("point", point, is_finite))?;
-        lists.clear();
-        for point in points {
-            let start = lists.values.len();
-            self.collect_nearest(point, k, max_distance * max_distance, &mut lists.values);
-            sort(&mut lists.values[start..]);
-            lists.end();
-        }
-        Ok(())
+        lists.replace(points, |point, nearest| {
+            let start = nearest.len();
+            self.collect_nearest(point, k, max_distance * max_distance, nearest)?;
+            sort(&mut nearest[start..]);
+            ControlFlow::Continue(())
+        })
     }
 
     /// Adds to a list a heap of the `k` nearest bodies whose squared distances are at most `limit`, the farthest on top.
-    /// Returns how many bodies it looked at.
+    /// Goes on with how many bodies it looked at, unless there is too little memory.
     fn collect_nearest(
         &self,
         point: &[T; D],
         k: usize,
         limit: f64,
         nearest: &mut Vec<Neighbor>,
-    ) -> usize {
+    ) -> ControlFlow<(), usize> {
         if k == 0 {
-            return 0;
+            return ControlFlow::Continue(0);
         }
         let start = nearest.len();
         // What is farther away than this does not matter: it is lowered once there are k.
@@ -112,7 +111,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
             if distance_squared <= farthest.get() && self.sees(index) {
                 let found = Neighbor { id: self.bodies.slots.id(index), distance_squared };
                 if nearest.len() - start < k {
-                    nearest.push(found);
+                    push(nearest, found)?;
                     rise(&mut nearest[start..]);
                 } else if found.rank() < nearest[start].rank() {
                     nearest[start] = found;
@@ -123,8 +122,8 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
                 }
             }
             ControlFlow::Continue(())
-        });
-        seen
+        })?;
+        ControlFlow::Continue(seen)
     }
 }
 
@@ -141,9 +140,9 @@ mod tests {
         let queries = world.queries();
         let seen = |k, max_distance: f64| {
             let mut nearest = Vec::new();
-            let seen =
-                queries.collect_nearest(&[5000.0], k, max_distance * max_distance, &mut nearest);
-            (nearest.len(), seen)
+            let limit = max_distance * max_distance;
+            let seen = queries.collect_nearest(&[5000.0], k, limit, &mut nearest);
+            (nearest.len(), seen.continue_value().unwrap())
         };
         assert_eq!(seen(20_000, f64::INFINITY), (10_000, 10_000));
         let (found, looked_at) = seen(20_000, 50.0);

@@ -8,6 +8,7 @@ use super::at_once;
 use super::lists::Lists;
 use super::math::{check_each, fault_in, is_finite, is_length, is_within};
 use super::sorted_bodies::SortedBodies;
+use crate::memory::{push, reserve_for};
 use crate::world::bodies::{Bodies, Filter, ProxyId, flag, sort_ids};
 use crate::world::tree::Tree;
 use crate::{Aabb, Error, Scalar};
@@ -21,6 +22,8 @@ use crate::{Aabb, Error, Scalar};
 /// Each query for a list returns a new one. The forms for many, as [`overlapping_many`](Self::overlapping_many), write to
 /// [`Lists`] of yours instead, which keep their memory: with them, queries in each frame do not allocate once the lists are
 /// large enough, unless there are thousands of them in a large world.
+///
+/// If an answer does not fit in memory, the query ends with [`Error::OutOfMemory`], and [`Lists`] of yours are empty.
 #[derive(Clone, Copy)]
 pub struct Queries<'w, const D: usize, T: Scalar = f32> {
     pub(in crate::world) bodies: &'w Bodies<D, T>,
@@ -146,10 +149,9 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
             && at_once::list(areas, self.bodies, self.sorted, is_visible, lists)
         {
             self.sort_each(lists);
-        } else {
-            self.collect(areas, lists, |area, found| self.list_box(area, found));
+            return Ok(());
         }
-        Ok(())
+        self.collect(areas, lists, |area, found| self.list_box(area, found))
     }
 
     /// Calls `visit` with each body whose box overlaps a box, in no particular order, until it breaks. It
@@ -179,7 +181,8 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         mut visit: impl FnMut(ProxyId) -> ControlFlow<()>,
     ) -> Result<(), Error> {
         area.check(0)?;
-        self.visit_box(area, &mut visit);
+        // The visitor knows whether it stopped.
+        let _ = self.visit_box(area, &mut visit);
         Ok(())
     }
 
@@ -206,11 +209,12 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         let is_number = |at: T| at <= T::INFINITY && at >= T::NEG_INFINITY;
         check_each(points, |point| fault_in("point", point, is_number))?;
         if at_once::may_pay(self.bodies, points.len()) {
-            let areas: Vec<_> = points.iter().map(|&at| Aabb::new(at, at)).collect();
+            let mut areas = Vec::new();
+            reserve_for(&mut areas, points.len())?;
+            areas.extend(points.iter().map(|&at| Aabb::new(at, at)));
             return self.overlapping_many(&areas, lists);
         }
-        self.collect(points, lists, |&at, found| self.list_box(&Aabb::new(at, at), found));
-        Ok(())
+        self.collect(points, lists, |&at, found| self.list_box(&Aabb::new(at, at), found))
     }
 
     /// The bodies whose boxes are at most `radius` away from `center`, sorted.
@@ -247,8 +251,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         check_each(spheres, |(center, radius)| {
             fault_in("center", center, is_finite).or(fault_in("radius", &[*radius], is_length))
         })?;
-        self.collect(spheres, lists, |sphere, found| self.list_sphere(sphere, found));
-        Ok(())
+        self.collect(spheres, lists, |sphere, found| self.list_sphere(sphere, found))
     }
 
     /// One query by way of the form for many.
@@ -267,14 +270,11 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         &self,
         regions: &[Q],
         lists: &mut Lists<ProxyId>,
-        list: impl Fn(&Q, &mut Vec<ProxyId>),
-    ) {
-        lists.clear();
-        for region in regions {
-            list(region, &mut lists.values);
-            lists.end();
-        }
+        list: impl Fn(&Q, &mut Vec<ProxyId>) -> ControlFlow<()>,
+    ) -> Result<(), Error> {
+        lists.replace(regions, list)?;
         self.sort_each(lists);
+        Ok(())
     }
 
     /// Sorts each list, unless it need not be.
@@ -289,25 +289,29 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         }
     }
 
-    /// Appends the bodies whose boxes overlap a box.
-    fn list_box(&self, area: &Aabb<D, T>, found: &mut Vec<ProxyId>) {
+    /// Appends the bodies whose boxes overlap a box, as far as there is memory.
+    fn list_box(&self, area: &Aabb<D, T>, found: &mut Vec<ProxyId>) -> ControlFlow<()> {
         self.tree.visit_overlapping(area, &mut |index| {
             if self.is_in_box(index, area) {
-                found.push(self.bodies.slots.id(index));
+                push(found, self.bodies.slots.id(index))?;
             }
             ControlFlow::Continue(())
-        });
+        })
     }
 
     /// Shows the bodies whose boxes overlap a box.
     #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
-    fn visit_box(&self, area: &Aabb<D, T>, visit: &mut dyn FnMut(ProxyId) -> ControlFlow<()>) {
+    fn visit_box(
+        &self,
+        area: &Aabb<D, T>,
+        visit: &mut dyn FnMut(ProxyId) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
         self.tree.visit_overlapping(area, &mut |index| {
             if self.is_in_box(index, area) {
                 visit(self.bodies.slots.id(index))?;
             }
             ControlFlow::Continue(())
-        });
+        })
     }
 
     #[inline]
@@ -315,16 +319,20 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         self.bodies.shape(index).overlaps(area) && self.sees(index)
     }
 
-    /// Appends the bodies near a point.
-    fn list_sphere(&self, (center, radius): &([T; D], T), found: &mut Vec<ProxyId>) {
+    /// Appends the bodies near a point, as far as there is memory.
+    fn list_sphere(
+        &self,
+        (center, radius): &([T; D], T),
+        found: &mut Vec<ProxyId>,
+    ) -> ControlFlow<()> {
         let is_near = |bounds: &Aabb<D, T>| is_within(center, radius.to_f64(), bounds);
         let bound = |bounds: &Aabb<D, T>| is_near(bounds).then_some(0.0);
         self.tree.search(bound, |index| {
             if is_near(self.bodies.shape(index)) && self.sees(index) {
-                found.push(self.bodies.slots.id(index));
+                push(found, self.bodies.slots.id(index))?;
             }
             ControlFlow::Continue(())
-        });
+        })
     }
 
     /// Whether a body is there, which the tree alone does not say, and not filtered out.

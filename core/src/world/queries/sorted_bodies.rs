@@ -118,14 +118,16 @@ struct Changes {
 }
 
 impl Changes {
-    /// None if there are too many.
+    /// None if there are too many, or not enough memory.
     fn between<const D: usize, T: Scalar>(old: &[Aabb<D, T>], new: &[Aabb<D, T>]) -> Option<Self> {
         let most = old.len() / CHANGED_ONE_IN;
         if !(old.len()..=old.len() + most).contains(&new.len()) {
             return None;
         }
-        let mut listed: Vec<_> = (old.len() as u32..new.len() as u32).collect();
-        let mut bits = Vec::with_capacity(old.len().div_ceil(64));
+        let (mut listed, mut bits) = (Vec::new(), Vec::new());
+        listed.try_reserve_exact(most + 64).ok()?;
+        listed.extend(old.len() as u32..new.len() as u32);
+        bits.try_reserve_exact(old.len().div_ceil(64)).ok()?;
         for (start, (old, new)) in (0..).step_by(64).zip(old.chunks(64).zip(new.chunks(64))) {
             let each = (0..).zip(old.iter().zip(new));
             let mut left =
@@ -159,7 +161,9 @@ impl Changes {
         let mut pairs = finder.take_pairs();
         if !self.listed.is_empty() {
             self.drop_from(&mut pairs);
-            let changed: Vec<_> = self.listed.iter().map(|&index| shapes[index as usize]).collect();
+            let mut changed = Vec::new();
+            changed.try_reserve_exact(self.listed.len()).ok()?;
+            changed.extend(self.listed.iter().map(|&index| shapes[index as usize]));
             let more = finder.search(areas).against(&changed).pairs_up_to(most).ok()??;
             more.iter_mut().for_each(|[_, at]| *at = self.listed[*at as usize]);
             pairs.try_reserve(more.len()).ok()?;

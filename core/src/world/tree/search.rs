@@ -127,17 +127,17 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         })
     }
 
-    /// Visits the bodies whose boxes overlap `area`, in no particular order. It tests each node once, where
+    /// Visits the bodies whose boxes overlap `area`, in no particular order, until `visit` breaks. It tests each node once, where
     /// [`overlapping`](Self::overlapping) tests those above again on the way back.
     pub fn visit_overlapping(
         &self,
         area: &Aabb<D, T>,
         visit: &mut dyn FnMut(u32) -> ControlFlow<()>,
-    ) {
-        if self.root != NONE {
-            // The visitor knows whether it stopped.
-            let _ = self.visit_overlapping_in(self.root, area, visit);
+    ) -> ControlFlow<()> {
+        if self.root == NONE {
+            return ControlFlow::Continue(());
         }
+        self.visit_overlapping_in(self.root, area, visit)
     }
 
     fn visit_overlapping_in(
@@ -170,7 +170,7 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         }
     }
 
-    /// Visits the bodies in boxes that `bound` does not exclude, the nearer of a node's parts first.
+    /// Visits the bodies in boxes that `bound` does not exclude, the nearer of a node's parts first, until `visit` breaks.
     ///
     /// `bound` gives a lower bound of the distance of all bodies in a box, or `None` if none of them can
     /// matter.
@@ -178,11 +178,11 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         &self,
         bound: impl Fn(&Aabb<D, T>) -> Option<f64>,
         mut visit: impl FnMut(u32) -> ControlFlow<()>,
-    ) {
-        if self.root != NONE {
-            // The visitor knows whether it stopped.
-            let _ = self.search_in(self.root, &bound, &mut visit);
+    ) -> ControlFlow<()> {
+        if self.root == NONE {
+            return ControlFlow::Continue(());
         }
+        self.search_in(self.root, &bound, &mut visit)
     }
 
     fn search_in(
