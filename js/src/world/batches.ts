@@ -14,7 +14,8 @@ export abstract class Batches<D extends Dimensions = Dimensions> extends Queries
    * `ends[i]` is where the list of box `i` ends. A filter is an object, not a function, here and in the other calls for
    * many queries.
    *
-   * @throws {@link InvalidBoxError} with the index of the first bad box.
+   * @throws {@link InvalidBoxError} with the index of the first bad box; {@link OutOfMemoryError}, here and in the other calls
+   *   for many queries, if the answers do not fit: ask fewer at a time.
    *
    * @example
    * ```js

@@ -929,6 +929,7 @@ class BroadPhase:
         Raises:
             InvalidBoxError: for the first box that is inverted or has a NaN.
             ValueError, TypeError: for another shape, or anything but numbers.
+            MemoryError: if the answers do not fit into memory: ask fewer at a time.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
@@ -983,6 +984,7 @@ class BroadPhase:
         Raises:
             InvalidQueryError: for the first point with a NaN.
             ValueError, TypeError: for another shape, or anything but numbers.
+            MemoryError: if the answers do not fit into memory: ask fewer at a time.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
@@ -1054,6 +1056,7 @@ class BroadPhase:
         Raises:
             InvalidQueryError: for the first that is invalid, as for a single one.
             ValueError, TypeError: for other shapes, or anything but numbers.
+            MemoryError: if the answers do not fit into memory: ask fewer at a time.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
@@ -1128,6 +1131,7 @@ class BroadPhase:
         Raises:
             InvalidQueryError: for the first point that is not finite, or if the distance is negative or NaN.
             ValueError, TypeError: for another shape, or anything but numbers.
+            MemoryError: if the answers do not fit into memory: ask fewer at a time.
 
         >>> import sweep_and_prune as sap
         >>> world = sap.BroadPhase(dimensions=1)
