@@ -114,6 +114,8 @@ impl<I: Id> Answer<I> {
     }
 
     /// Gives up what was found, and its memory.
+    #[cold]
+    #[inline(never)]
     fn forget(&mut self) {
         *self = Self {
             ids: Vec::new(),
@@ -183,11 +185,11 @@ fn try_to_ask<const D: usize, T: Scalar, I: Id>(
     let rows = Rows { numbers, width: query.width(D) };
     let lists = &mut answer.found;
     match query {
-        Query::Overlapping => queries.overlapping_many(&rows.read(aabb::<D, T, f64>)?, lists)?,
-        Query::Containing => queries.containing_many(&rows.read(point::<D, T, f64>)?, lists)?,
-        Query::Within => queries.within_many(&rows.read(sphere::<D, T>)?, lists)?,
+        Query::Overlapping => queries.overlapping_many(&rows.read(aabb::<D, T, f64>), lists)?,
+        Query::Containing => queries.containing_many(&rows.read(point::<D, T, f64>), lists)?,
+        Query::Within => queries.within_many(&rows.read(sphere::<D, T>), lists)?,
         Query::Cast | Query::CastEntering => {
-            let casts = casts(&rows, query == Query::CastEntering)?;
+            let casts = casts(&rows, query == Query::CastEntering);
             let mut hits = Vec::new();
             queries.cast_many(&casts, &mut hits)?;
             answer.reserve([hits.len(); 4])?;
@@ -200,7 +202,7 @@ fn try_to_ask<const D: usize, T: Scalar, I: Id>(
             return Ok(());
         }
         Query::CastAll | Query::CastAllEntering => {
-            let casts = casts(&rows, query == Query::CastAllEntering)?;
+            let casts = casts(&rows, query == Query::CastAllEntering);
             let mut lists = Lists::new();
             queries.cast_all_many(&casts, &mut lists)?;
             let hits = lists.values().len();
@@ -210,7 +212,7 @@ fn try_to_ask<const D: usize, T: Scalar, I: Id>(
             return Ok(());
         }
         Query::Nearest { k, max_distance } => {
-            let points = rows.read(point::<D, T, f64>)?;
+            let points = rows.read(point::<D, T, f64>);
             let mut nearest = Lists::new();
             queries.nearest_many(&points, k, max_distance, &mut nearest)?;
             let found = nearest.values().len();
@@ -241,12 +243,9 @@ struct Rows<'a> {
 impl Rows<'_> {
     /// Not inline, and with a function pointer: a WebAssembly file has this for each type of box.
     #[inline(never)]
-    fn read<Q>(&self, make: fn(&[f64]) -> Q) -> Result<Vec<Q>, Error> {
+    fn read<Q>(&self, make: fn(&[f64]) -> Q) -> Vec<Q> {
         let count = self.numbers.len() / self.width;
-        let mut queries = Vec::new();
-        queries.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
-        queries.extend((0..count).map(|index| make(&self.numbers[index * self.width..])));
-        Ok(queries)
+        (0..count).map(|index| make(&self.numbers[index * self.width..])).collect()
     }
 }
 
@@ -254,13 +253,10 @@ fn sphere<const D: usize, T: Scalar>(row: &[f64]) -> ([T; D], T) {
     (point(row), T::from_f64(row[D]))
 }
 
-fn casts<const D: usize, T: Scalar>(
-    rows: &Rows<'_>,
-    are_entering: bool,
-) -> Result<Vec<Cast<D, T>>, Error> {
-    let mut casts = rows.read(cast::<D, T>)?;
+fn casts<const D: usize, T: Scalar>(rows: &Rows<'_>, are_entering: bool) -> Vec<Cast<D, T>> {
+    let mut casts = rows.read(cast::<D, T>);
     casts.iter_mut().for_each(|cast| cast.ignores_touching = are_entering);
-    Ok(casts)
+    casts
 }
 
 fn cast<const D: usize, T: Scalar>(row: &[f64]) -> Cast<D, T> {

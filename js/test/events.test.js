@@ -85,20 +85,36 @@ test("what they do not have is refused by name, or not there", () => {
   assert.ok(!(world instanceof BroadPhase));
 });
 
+/** The bytes of a file after gzip. @param {string} path */
+function zipped(path) {
+  return gzipSync(readFileSync(new URL(`../dist/${path}`, import.meta.url)), { level: 9 }).length;
+}
+
+/** The bytes of a module and all that it imports after gzip. @param {string} path */
+function zippedWithImports(path) {
+  const found = new Set([path]);
+  for (const at of found) {
+    for (const [, name] of readFileSync(new URL(`../dist/${at}`, import.meta.url), "utf8").matchAll(/from"\.\/([^"]+)"/g)) if (name) found.add(name);
+  }
+  return [...found].reduce((sum, at) => sum + zipped(at), 0);
+}
+
 test("each takes at most 80 KB after gzip, JavaScript and WebAssembly", () => {
-  const zipped = (/** @type {string} */ path) => gzipSync(readFileSync(new URL(`../dist/${path}`, import.meta.url)), { level: 9 }).length;
-  /** A module and what it imports. @param {string} path @param {Set<string>} found */
-  const modules = (path, found = new Set()) => {
-    found.add(path);
-    for (const [, name] of readFileSync(new URL(`../dist/${path}`, import.meta.url), "utf8").matchAll(/from"\.\/([^"]+)"/g)) {
-      if (name && !found.has(name)) modules(name, found);
-    }
-    return found;
-  };
   for (const name of ["events-2d", "events-3d"]) {
-    const scripts = [...modules(`${name}.js`)];
-    assert.ok(scripts.length > 1, "no import was found");
-    const script = scripts.reduce((sum, path) => sum + zipped(path), 0);
+    const script = zippedWithImports(`${name}.js`);
+    assert.ok(script > zipped(`${name}.js`), "no import was found");
     for (const build of [".wasm", ".simd.wasm"]) assert.ok(script + zipped(name + build) <= 80_000, `${name}${build}: ${script} + ${zipped(name + build)}`);
+  }
+});
+
+test("the sizes in the README are those of the files", () => {
+  const readme = readFileSync(new URL("../README.md", import.meta.url), "utf8");
+  const rows = [...readme.matchAll(/^\| `sweep-and-prune(?:\/(.+))?` \| (\d+) KB \| (\d+) KB \| (\d+) KB \|$/gm)];
+  assert.equal(rows.length, 4);
+  for (const [row, name, ...said] of rows) {
+    const [core, script, inline] = name ? [name, name, `${name}-inline`] : ["sweep-and-prune", "index", "inline"];
+    const sizes = [zipped(`${core}.simd.wasm`), zippedWithImports(`${script}.js`), zippedWithImports(`${inline}.js`)];
+    // A few bytes more or less need no other table.
+    sizes.forEach((size, at) => assert.ok(Math.abs(size / 1000 - Number(said[at])) <= 1, `${row}: ${size} bytes`));
   }
 });

@@ -104,7 +104,7 @@ test("answers to queries that do not fit leave the world as it was", () => {
   ]) {
     assert.throws(ask, OutOfMemoryError);
     assert.equal(world.stateHash(), hash);
-    assert.deepEqual(world.containing(0), [...ids]);
+    assert.deepEqual(world.containing([0]), [...ids]);
   }
   world.free();
 });

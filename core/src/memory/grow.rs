@@ -57,11 +57,17 @@ pub fn reserve_for<V>(table: &mut Vec<V>, count: usize) -> Result<(), OutOfMemor
 /// Appends an item. Breaks, and the table is as it was, if there is no memory for it.
 #[inline]
 pub fn push<V>(table: &mut Vec<V>, item: V) -> ControlFlow<()> {
-    if table.len() == table.capacity() && table.try_reserve(1).is_err() {
-        return ControlFlow::Break(());
+    if table.len() == table.capacity() {
+        make_room(table)?;
     }
     table.push(item);
     ControlFlow::Continue(())
+}
+
+#[cold]
+#[inline(never)]
+fn make_room<V>(table: &mut Vec<V>) -> ControlFlow<()> {
+    if table.try_reserve(1).is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
 }
 
 /// Reserves capacity for `more` items, and an eighth of all more, on large pages where they are many: random access to many

@@ -261,7 +261,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
         lists: &mut Lists<Hit<D, T>>,
     ) -> Result<(), Error> {
         check_each(casts, Cast::fault)?;
-        lists.replace(casts, |cast, hits| {
+        Ok(lists.replace(casts, |cast, hits| {
             let start = hits.len();
             self.run_cast(cast, |hit| {
                 if push(hits, hit).is_break() {
@@ -272,7 +272,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
             })?;
             sort(&mut hits[start..]);
             ControlFlow::Continue(())
-        })
+        })?)
     }
 
     /// Calls `visit` with what a ray or a moving box hits, nearer parts of the world roughly first.

@@ -3,8 +3,7 @@
 use alloc::vec::Vec;
 use core::ops::{ControlFlow, Index};
 
-use crate::Error;
-use crate::memory::reserve_for;
+use crate::memory::{OutOfMemory, reserve_for};
 
 /// The results of many queries, a list for each, or the pairs of each body. Passed to queries again, they keep their memory.
 ///
@@ -40,27 +39,36 @@ impl<V> Lists<V> {
     /// Replaces the lists by one for each query, whose values `list` appends.
     ///
     /// # Errors
-    /// [`Error::OutOfMemory`] if `list` breaks, or there is no memory for a number for each query: then there are no lists, and
-    /// no memory is kept.
+    /// [`OutOfMemory`] if `list` breaks, or there is no memory for a number for each query: then there are no lists, and no
+    /// memory is kept.
+    #[inline]
     pub(super) fn replace<Q>(
         &mut self,
         queries: &[Q],
         mut list: impl FnMut(&Q, &mut Vec<V>) -> ControlFlow<()>,
-    ) -> Result<(), Error> {
-        let Self { ends, values } = self;
-        ends.clear();
-        values.clear();
-        let fits = reserve_for(ends, queries.len()).is_ok()
-            && queries.iter().all(|query| {
-                let end = list(query, values);
-                ends.push(values.len());
-                end.is_continue()
-            });
-        if fits {
-            return Ok(());
+    ) -> Result<(), OutOfMemory> {
+        self.begin(queries.len())?;
+        for query in queries {
+            if list(query, &mut self.values).is_break() {
+                return self.fail();
+            }
+            self.ends.push(self.values.len());
         }
+        Ok(())
+    }
+
+    #[inline(never)]
+    fn begin(&mut self, count: usize) -> Result<(), OutOfMemory> {
+        self.ends.clear();
+        self.values.clear();
+        reserve_for(&mut self.ends, count).or_else(|_| self.fail())
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn fail(&mut self) -> Result<(), OutOfMemory> {
         *self = Self::new();
-        Err(Error::OutOfMemory)
+        Err(OutOfMemory)
     }
 
     /// How many lists there are: one a query or slot.

@@ -77,12 +77,12 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
     ) -> Result<(), Error> {
         check_each(&[max_distance], |limit| fault_in("max_distance", &[*limit], is_length))?;
         check_each(points, |point| fault_in("point", point, is_finite))?;
-        lists.replace(points, |point, nearest| {
+        Ok(lists.replace(points, |point, nearest| {
             let start = nearest.len();
             self.collect_nearest(point, k, max_distance * max_distance, nearest)?;
             sort(&mut nearest[start..]);
             ControlFlow::Continue(())
-        })
+        })?)
     }
 
     /// Adds to a list a heap of the `k` nearest bodies whose squared distances are at most `limit`, the farthest on top.

@@ -8,7 +8,7 @@ use super::at_once;
 use super::lists::Lists;
 use super::math::{check_each, fault_in, is_finite, is_length, is_within};
 use super::sorted_bodies::SortedBodies;
-use crate::memory::{push, reserve_for};
+use crate::memory::{OutOfMemory, push, reserve_for};
 use crate::world::bodies::{Bodies, Filter, ProxyId, flag, sort_ids};
 use crate::world::tree::Tree;
 use crate::{Aabb, Error, Scalar};
@@ -151,7 +151,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
             self.sort_each(lists);
             return Ok(());
         }
-        self.collect(areas, lists, |area, found| self.list_box(area, found))
+        Ok(self.collect(areas, lists, |area, found| self.list_box(area, found))?)
     }
 
     /// Calls `visit` with each body whose box overlaps a box, in no particular order, until it breaks. It
@@ -214,7 +214,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
             areas.extend(points.iter().map(|&at| Aabb::new(at, at)));
             return self.overlapping_many(&areas, lists);
         }
-        self.collect(points, lists, |&at, found| self.list_box(&Aabb::new(at, at), found))
+        Ok(self.collect(points, lists, |&at, found| self.list_box(&Aabb::new(at, at), found))?)
     }
 
     /// The bodies whose boxes are at most `radius` away from `center`, sorted.
@@ -251,7 +251,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         check_each(spheres, |(center, radius)| {
             fault_in("center", center, is_finite).or(fault_in("radius", &[*radius], is_length))
         })?;
-        self.collect(spheres, lists, |sphere, found| self.list_sphere(sphere, found))
+        Ok(self.collect(spheres, lists, |sphere, found| self.list_sphere(sphere, found))?)
     }
 
     /// One query by way of the form for many.
@@ -271,7 +271,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         regions: &[Q],
         lists: &mut Lists<ProxyId>,
         list: impl Fn(&Q, &mut Vec<ProxyId>) -> ControlFlow<()>,
-    ) -> Result<(), Error> {
+    ) -> Result<(), OutOfMemory> {
         lists.replace(regions, list)?;
         self.sort_each(lists);
         Ok(())
