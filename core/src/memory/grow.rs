@@ -58,7 +58,7 @@ pub fn reserve_for<V>(table: &mut Vec<V>, count: usize) -> Result<(), OutOfMemor
 #[inline]
 pub fn push<V>(table: &mut Vec<V>, item: V) -> ControlFlow<()> {
     if table.len() == table.capacity() {
-        make_room(table)?;
+        grow_by_one(table)?;
     }
     table.push(item);
     ControlFlow::Continue(())
@@ -66,7 +66,7 @@ pub fn push<V>(table: &mut Vec<V>, item: V) -> ControlFlow<()> {
 
 #[cold]
 #[inline(never)]
-fn make_room<V>(table: &mut Vec<V>) -> ControlFlow<()> {
+fn grow_by_one<V>(table: &mut Vec<V>) -> ControlFlow<()> {
     if table.try_reserve(1).is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
 }
 
