@@ -153,14 +153,16 @@ fn draw(random: &mut Random) -> Aabb<2> {
 
 /// Asks with 0, 1, 2 ... allocations until that are enough. Where the answer does not fit, there are no lists, and the same
 /// query is answered right with memory. Returns how many allocations were enough.
-fn answers_or_fails_cleanly<V: Debug + PartialEq>(
+fn answers_or_fails_cleanly<V: Clone + Debug + PartialEq>(
     ask: impl Fn(&mut Lists<V>) -> Result<(), Error>,
 ) -> usize {
     let mut expected = Lists::new();
     ask(&mut expected).unwrap();
     assert!(!expected.values().is_empty());
-    for allocations in 0.. {
-        let mut lists = Lists::new();
+    // Also lists that were filled before.
+    let counts = (0..).flat_map(|count| [(Lists::new(), count), (expected.clone(), count)]);
+    for (mut lists, allocations) in counts {
+        let is_new = lists.is_empty();
         let (end, is_refused) = with_allocations(allocations, || ask(&mut lists));
         match end {
             Ok(()) => assert!(lists == expected, "{allocations} allocations"),
@@ -169,7 +171,7 @@ fn answers_or_fails_cleanly<V: Debug + PartialEq>(
                 assert!(lists.is_empty() && lists.values().is_empty());
             }
         }
-        if !is_refused {
+        if is_new && !is_refused {
             return allocations;
         }
         ask(&mut lists).unwrap();

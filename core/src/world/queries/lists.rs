@@ -64,9 +64,13 @@ impl<V> Lists<V> {
         reserve_for(&mut self.ends, count).or_else(|_| self.fail())
     }
 
+    /// Drops the lists and their memory.
+    ///
+    /// # Errors
+    /// Always.
     #[cold]
     #[inline(never)]
-    fn fail(&mut self) -> Result<(), OutOfMemory> {
+    pub(super) fn fail(&mut self) -> Result<(), OutOfMemory> {
         *self = Self::new();
         Err(OutOfMemory)
     }

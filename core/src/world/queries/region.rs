@@ -210,7 +210,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         check_each(points, |point| fault_in("point", point, is_number))?;
         if at_once::may_pay(self.bodies, points.len()) {
             let mut areas = Vec::new();
-            reserve_for(&mut areas, points.len())?;
+            reserve_for(&mut areas, points.len()).or_else(|_| lists.fail())?;
             areas.extend(points.iter().map(|&at| Aabb::new(at, at)));
             return self.overlapping_many(&areas, lists);
         }
