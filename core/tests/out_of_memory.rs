@@ -198,9 +198,9 @@ fn each_query() {
         answers_or_fails_cleanly(|lists| queries.cast_all_many(&casts, lists)),
     ]
     .to_vec();
-    for allocations in 0.. {
+    for count in 0.. {
         let ask = || queries.cast_many(&casts, &mut Vec::new());
-        let (end, is_refused) = with_allocations(allocations, ask);
+        let (end, is_refused) = with_allocations(count, ask);
         assert_eq!(end, if is_refused { Err(Error::OutOfMemory) } else { Ok(()) });
         if !is_refused {
             break;

@@ -125,6 +125,7 @@ impl Changes {
             return None;
         }
         let (mut listed, mut bits) = (Vec::new(), Vec::new());
+        // There may be a word of bits more before it shows that there are too many.
         listed.try_reserve_exact(most + 64).ok()?;
         listed.extend(old.len() as u32..new.len() as u32);
         bits.try_reserve_exact(old.len().div_ceil(64)).ok()?;
