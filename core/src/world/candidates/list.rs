@@ -380,12 +380,24 @@ pub fn push_wanted<I: Copy, O: Copy + Default>(
     const CHUNK: usize = 256;
     let mut wanted = [O::default(); CHUNK];
     for (chunk, items) in items.chunks(CHUNK).enumerate() {
-        let mut count = 0;
-        for (position, &item) in items.iter().enumerate() {
-            let (made, is_wanted) = choose(chunk * CHUNK + position, item);
-            wanted[count % CHUNK] = made;
-            count += usize::from(is_wanted);
-        }
+        let choose = |position, item| choose(chunk * CHUNK + position, item);
+        let count = write_wanted(&mut wanted, items, choose);
         out.extend_from_slice(&wanted[..count]);
     }
+}
+
+/// Writes what [`push_wanted`] would append to the front of a slice that is as long as `items` at least. Returns how many.
+#[inline]
+pub fn write_wanted<I: Copy, O>(
+    out: &mut [O],
+    items: &[I],
+    mut choose: impl FnMut(usize, I) -> (O, bool),
+) -> usize {
+    let mut count = 0;
+    for (position, &item) in items.iter().enumerate() {
+        let (made, is_wanted) = choose(position, item);
+        out[count] = made;
+        count += usize::from(is_wanted);
+    }
+    count
 }

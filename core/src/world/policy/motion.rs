@@ -161,12 +161,14 @@ fn key(number: f64) -> u32 {
     (number.to_bits() >> 32) as u32
 }
 
-/// The median of at least one number, given their keys, to six digits. Bit by bit, which takes a few kilobytes less of
-/// WebAssembly than a selection of the standard library, and no more time.
+/// The median of at least one number, given their keys, to six digits. Bit by bit below those that all keys share, which takes
+/// a few kilobytes less of WebAssembly than a selection of the standard library, and no more time.
 fn median(keys: &[u32]) -> f64 {
     let middle = keys.len() / 2;
-    let mut median = 0;
-    for bit in (0..u32::BITS).rev() {
+    let differ = keys.iter().fold(0, |differ, key| differ | key ^ keys[0]);
+    let unknown = u32::BITS - differ.leading_zeros();
+    let mut median = keys[0] & !(((1_u64 << unknown) - 1) as u32);
+    for bit in (0..unknown).rev() {
         let next = median | 1 << bit;
         if keys.iter().map(|&key| u32::from(key < next)).sum::<u32>() as usize <= middle {
             median = next;

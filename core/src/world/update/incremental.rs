@@ -14,7 +14,7 @@ use crate::Scalar;
 use crate::memory::{OutOfMemory, prefetch_item, prefetch_pays, preload, reserve_for};
 use crate::sampling::positions;
 use crate::world::bodies::{Bodies, RANDOM_READ, When, flag};
-use crate::world::candidates::{Candidates, push_wanted};
+use crate::world::candidates::{Candidates, write_wanted};
 use crate::world::changes::Events;
 use crate::world::layout;
 use crate::world::policy::{Policy, TRIES_SAMPLES};
@@ -204,13 +204,16 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         }
         for start in (0..count).step_by(TESTED) {
             let some = start..count.min(start + TESTED);
-            match (are_few, drops) {
+            if scratch.positions.len() < some.len() {
+                scratch.positions.resize(some.len(), 0);
+            }
+            let found = match (are_few, drops) {
                 (true, _) => scratch.list_changed(candidates, some),
                 (_, true) => scratch.list_flips::<true>(bodies, candidates, some),
                 (_, false) => scratch.list_flips::<false>(bodies, candidates, some),
-            }
+            };
             let Scratch { is_escaped, positions, dropped, .. } = &mut *scratch;
-            for &at in &*positions {
+            for &at in &positions[..found] {
                 let [a, b] = candidates.listed()[at];
                 if drops && is_escaped[a as usize] | is_escaped[b as usize] {
                     dropped.push(at);
@@ -428,29 +431,27 @@ impl<const D: usize, T: Scalar> Scratch<D, T> {
         }
     }
 
-    /// Lists which of some candidates, by position, are of bodies that are flagged as changed.
-    fn list_changed(&mut self, candidates: &Candidates, some: Range<usize>) {
+    /// Lists which of some candidates, by position, are of bodies that are flagged as changed. Returns how many.
+    fn list_changed(&mut self, candidates: &Candidates, some: Range<usize>) -> usize {
         let Self { is_changed, positions, .. } = self;
-        positions.clear();
-        push_wanted(positions, &candidates.listed()[some.clone()], |at, [a, b]| {
+        write_wanted(positions, &candidates.listed()[some.clone()], |at, [a, b]| {
             (some.start + at, is_changed[a as usize] | is_changed[b as usize])
-        });
+        })
     }
 
     /// Tests some candidates, and lists the positions of those that begin or end and, if `DROPS`, of those
-    /// of marked bodies.
+    /// of marked bodies. Returns how many.
     fn list_flips<const DROPS: bool>(
         &mut self,
         bodies: &Bodies<D, T>,
         candidates: &Candidates,
         some: Range<usize>,
-    ) {
+    ) -> usize {
         let boxes = &bodies.boxes;
         let is_far = prefetch_pays(boxes);
         let (pairs, live) = (candidates.listed(), &candidates.live()[some.clone()]);
         let Self { is_escaped, positions, .. } = self;
-        positions.clear();
-        push_wanted(positions, &pairs[some.clone()], |at, [a, b]| {
+        write_wanted(positions, &pairs[some.clone()], |at, [a, b]| {
             if is_far && let Some(&[_, later]) = pairs.get(some.start + at + AHEAD) {
                 // The first bodies of neighbors in the list are near each other in memory.
                 prefetch_item(boxes, later as usize);
@@ -458,7 +459,7 @@ impl<const D: usize, T: Scalar> Scratch<D, T> {
             let is_live = boxes[a as usize].overlaps_branch_free(&boxes[b as usize]);
             let is_dropped = DROPS && is_escaped[a as usize] | is_escaped[b as usize];
             (some.start + at, (is_live != live[at]) | is_dropped)
-        });
+        })
     }
 }
 
