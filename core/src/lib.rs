@@ -10,6 +10,7 @@ mod cloning;
 #[cfg(not(target_arch = "wasm32"))]
 mod compiled;
 mod error;
+mod float;
 mod geometry;
 mod memory;
 mod pairs;

@@ -17,8 +17,8 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::kernel::SortedBoxes;
-use super::plan::greater;
 use super::source::Source;
+use crate::float::greater;
 use crate::geometry::{Arithmetic, Key, Quantizer};
 use crate::memory::grow;
 use crate::{Aabb, Scalar};

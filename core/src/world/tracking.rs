@@ -60,8 +60,7 @@ pub struct Scratch<const D: usize, T: Scalar> {
     /// By index: bodies that escaped or left, and bodies that changed.
     pub is_escaped: Vec<bool>,
     pub is_changed: Vec<bool>,
-    /// Positions of candidates to test, of some at a time, and of dropped ones.
-    pub positions: Vec<usize>,
+    /// Positions of candidates that are dropped.
     pub dropped: Vec<usize>,
     /// The bodies that an update wakes.
     pub woken: Vec<u32>,

@@ -245,8 +245,6 @@ fn check_reserved(motion: Motion) {
     let pairs = candidates.capacity();
     let reserved = scratch.dropped.capacity();
     assert!(reserved < pairs + pairs / 2, "{reserved} for {pairs} pairs");
-    // Of a few thousand candidates at a time.
-    assert!(scratch.positions.capacity() < 1 << 14);
     if motion == Motion::MostlyStill {
         return;
     }

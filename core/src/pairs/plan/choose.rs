@@ -5,9 +5,9 @@ use super::cost::{
     chance_to_share, cost,
 };
 use super::distribution::Distribution;
-use super::float::{greater, greatest, lesser, whole};
 use super::overlaps::{NO_LIMITS, Overlaps, chance_to_overlap, is_unexpected};
 use super::sample::{AXES, Sample};
+use crate::float::{greater, greatest, lesser, whole};
 
 // Which plan is taken decides the order of the pairs, so these limits do not depend on the machine. They were
 // chosen on the scenes of the benchmark, 1,000 to 1,000,000 boxes, on one core of an AMD EPYC (Zen 5).

@@ -7,9 +7,9 @@
 //! They were fitted to one core of an AMD EPYC (Zen 5).
 
 use super::distribution::Distribution;
-use super::float::{greater, lesser};
 use super::overlaps::{Limits, Members, member};
 use super::sample::{AXES, MOST_SAMPLED, Sample};
+use crate::float::{greater, lesser};
 
 /// Nanoseconds to place, sort and lay out one record, and to begin its scan.
 pub const RECORD_NS: f64 = 24.0;

@@ -1,7 +1,7 @@
 //! The distribution of the boxes of the samples: how far they reach, how they cluster.
 
-use super::float::{floor, greater, lesser};
 use super::sample::{AXES, MOST_SAMPLED, Sample, sort};
+use crate::float::{floor, greater, lesser};
 
 /// How many resolutions the histogram of an axis has: 1, 2, 4, ... 2^(RESOLUTIONS - 1) cells. Small samples use fewer.
 const RESOLUTIONS: usize = 11;

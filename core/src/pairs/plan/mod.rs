@@ -37,7 +37,6 @@
 mod choose;
 mod cost;
 mod distribution;
-mod float;
 mod near;
 mod overlaps;
 mod sample;
@@ -47,14 +46,13 @@ use choose::{Choice, cheapest, sweep_of_few};
 use cost::Cut;
 pub(super) use cost::TEST_NS;
 use distribution::Distribution;
-pub(super) use float::greater;
-use float::lesser;
 pub(super) use near::{MOST_NEAR_CELLS, near_cells};
 use sample::{AXES, Sample, scale};
 
 use super::grid::{Cells, Grid};
 use super::source::Source;
 use crate::Scalar;
+use crate::float::lesser;
 
 /// The most cells on an axis.
 const MOST_CELLS_PER_AXIS: f64 = 65535.0;

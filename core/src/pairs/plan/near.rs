@@ -2,9 +2,9 @@
 
 use super::cost::{Cut, Shape};
 use super::distribution::Distribution;
-use super::float::{greater, lesser, whole};
 use super::grid;
 use super::sample::{AXES, Sample, scale};
+use crate::float::{greater, lesser, whole};
 use crate::pairs::grid::Grid;
 use crate::{Aabb, Scalar};
 

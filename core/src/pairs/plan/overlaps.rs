@@ -4,8 +4,8 @@
 //! that a sample can tell apart, and that the axes are independent of each other. Where most boxes lie in a small part
 //! of an axis, or small and large boxes in different parts, only their edges show how many a sweep would test.
 
-use super::float::greater;
 use super::sample::{AXES, Sample};
+use crate::float::greater;
 
 /// The most boxes of a sample that are compared: one bit each.
 const MOST_COMPARED: usize = u64::BITS as usize;

@@ -1,7 +1,7 @@
 //! A sample of a set of boxes, from which the plan is made.
 
-use super::float::{greater, lesser};
 use crate::Scalar;
+use crate::float::{greater, lesser};
 use crate::geometry::Arithmetic;
 use crate::pairs::source::Source;
 use crate::sampling::positions;

@@ -1,8 +1,8 @@
 //! Plans for boxes whose coordinates are far from usual.
 
-use super::float::whole;
 use super::*;
 use crate::Aabb;
+use crate::float::whole;
 
 /// Boxes of a size at whole multiples of a step below 100, on two axes.
 fn boxes<T: Scalar>(step: f64, size: f64) -> alloc::vec::Vec<Aabb<2, T>> {

@@ -369,6 +369,9 @@ pub fn are_asleep(slots: &Slots, pair: &[u32; 2]) -> bool {
     pair.iter().all(|&index| slots.has(index, flag::ASLEEP))
 }
 
+/// How many items are chosen from at a time.
+pub const CHUNK: usize = 256;
+
 /// Appends what `choose` makes of each item and its position, if it says so, without a branch: it is
 /// unpredictable which candidates begin or end.
 #[inline]
@@ -377,7 +380,6 @@ pub fn push_wanted<I: Copy, O: Copy + Default>(
     items: &[I],
     mut choose: impl FnMut(usize, I) -> (O, bool),
 ) {
-    const CHUNK: usize = 256;
     let mut wanted = [O::default(); CHUNK];
     for (chunk, items) in items.chunks(CHUNK).enumerate() {
         let choose = |position, item| choose(chunk * CHUNK + position, item);
@@ -386,17 +388,17 @@ pub fn push_wanted<I: Copy, O: Copy + Default>(
     }
 }
 
-/// Writes what [`push_wanted`] would append to the front of a slice that is as long as `items` at least. Returns how many.
+/// Writes what [`push_wanted`] would append, of a chunk at most. Returns how many.
 #[inline]
 pub fn write_wanted<I: Copy, O>(
-    out: &mut [O],
+    out: &mut [O; CHUNK],
     items: &[I],
     mut choose: impl FnMut(usize, I) -> (O, bool),
 ) -> usize {
     let mut count = 0;
     for (position, &item) in items.iter().enumerate() {
         let (made, is_wanted) = choose(position, item);
-        out[count] = made;
+        out[count % CHUNK] = made;
         count += usize::from(is_wanted);
     }
     count

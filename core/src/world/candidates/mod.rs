@@ -4,5 +4,5 @@
 mod list;
 mod sort;
 
-pub use list::{Candidates, are_asleep, push_wanted, write_wanted};
+pub use list::{CHUNK, Candidates, are_asleep, push_wanted, write_wanted};
 pub use sort::PairSorter;

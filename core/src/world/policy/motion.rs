@@ -1,5 +1,6 @@
 //! How far ahead fat AABBs reach.
 
+use crate::float::{greater, greatest, lesser};
 use crate::sampling::positions;
 use crate::{Aabb, Scalar};
 
@@ -34,7 +35,7 @@ const LANDED: f64 = 0.4;
 /// The margin for inexact motion, in displacements.
 const SLACK: f64 = 0.125;
 /// How many bodies are sampled.
-const SAMPLE: usize = 512;
+const SAMPLE: usize = 128;
 
 impl Motion {
     /// Samples motion: the boxes that each body had at the last update and has now.
@@ -55,7 +56,7 @@ impl Motion {
         self.lifetime = 0.0;
         if count > 0 {
             self.size = median(&sizes[..count]);
-            self.lifetime = (REACH * self.size / median(&ways[..count])).min(LONGEST);
+            self.lifetime = lesser(REACH * self.size / median(&ways[..count]), LONGEST);
         }
     }
 
@@ -101,7 +102,7 @@ impl Motion {
         now: &Aabb<D, T>,
     ) -> bool {
         let side = longest_side(now);
-        side < f64::INFINITY && self.is_beyond(before, now, FAST * side.max(self.size))
+        side < f64::INFINITY && self.is_beyond(before, now, FAST * greater(side, self.size))
     }
 
     /// The fat AABB of a body that moves by itself. How long it lasts depends on the index, so that
@@ -113,10 +114,10 @@ impl Motion {
         now: &Aabb<D, T>,
     ) -> Aabb<D, T> {
         let side = longest_side(now);
-        let size = if side < f64::INFINITY { side.max(self.size) } else { self.size };
+        let size = if side < f64::INFINITY { greater(side, self.size) } else { self.size };
         let way = displacement(before, now);
         let longest = LONGEST * (1.0 - f64::from(index % 16) / 32.0);
-        let steps = if way > 0.0 { (REACH_ALONE * size / way).min(longest) } else { 0.0 };
+        let steps = if way > 0.0 { lesser(REACH_ALONE * size / way, longest) } else { 0.0 };
         if steps < 1.0 {
             // A jump: where it goes from here is unknown.
             let landed = T::from_f64(LANDED * size);
@@ -156,37 +157,40 @@ fn fatten<const D: usize, T: Scalar>(
     fat
 }
 
-/// The upper half of a number that is not negative. Larger numbers have no smaller key.
+/// How many of the lowest bits of a number its key leaves out: it is the number to 1 %.
+const LEFT_OUT: u32 = 45;
+
+/// The upper bits of a number that is not negative. Larger numbers have no smaller key.
 fn key(number: f64) -> u32 {
-    (number.to_bits() >> 32) as u32
+    (number.to_bits() >> LEFT_OUT) as u32
 }
 
-/// The median of at least one number, given their keys, to six digits. Bit by bit below those that all keys share, which takes
+/// The median of at least one number, given their keys, to 1 %. Bit by bit below those that all keys share, which takes
 /// a few kilobytes less of WebAssembly than a selection of the standard library, and no more time.
 fn median(keys: &[u32]) -> f64 {
     let middle = keys.len() / 2;
-    let differ = keys.iter().fold(0, |differ, key| differ | key ^ keys[0]);
-    let unknown = u32::BITS - differ.leading_zeros();
-    let mut median = keys[0] & !(((1_u64 << unknown) - 1) as u32);
+    let differing = keys.iter().fold(0, |bits, key| bits | key ^ keys[0]);
+    let unknown = u32::BITS - differing.leading_zeros();
+    let mut median = keys[0] >> unknown << unknown;
     for bit in (0..unknown).rev() {
         let next = median | 1 << bit;
         if keys.iter().map(|&key| u32::from(key < next)).sum::<u32>() as usize <= middle {
             median = next;
         }
     }
-    f64::from_bits(u64::from(median) << 32)
+    f64::from_bits(u64::from(median) << LEFT_OUT)
 }
 
 /// The greatest displacement of a side of a box on an axis.
 fn displacement<const D: usize, T: Scalar>(before: &Aabb<D, T>, now: &Aabb<D, T>) -> f64 {
     let sides = before.min.iter().chain(&before.max).zip(now.min.iter().chain(&now.max));
-    sides.map(|(&from, &to)| (to.to_f64() - from.to_f64()).abs()).fold(0.0, f64::max)
+    greatest(sides.map(|(&from, &to)| (to.to_f64() - from.to_f64()).abs()))
 }
 
 /// The length of the longest side.
 pub fn longest_side<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> f64 {
     let sides = aabb.min.iter().zip(&aabb.max);
-    sides.map(|(min, max)| max.to_f64() - min.to_f64()).fold(0.0, f64::max)
+    greatest(sides.map(|(min, max)| max.to_f64() - min.to_f64()))
 }
 
 #[cfg(test)]

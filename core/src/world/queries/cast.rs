@@ -8,6 +8,7 @@ use super::heap::{Ranked, rise, sort};
 use super::lists::Lists;
 use super::math::{Fault, check_each, fault_in, is_finite, is_length};
 use super::region::Queries;
+use crate::float::{greater, lesser};
 use crate::memory::{push, reserve_for};
 use crate::world::bodies::ProxyId;
 use crate::{Aabb, Error, Scalar};
@@ -80,9 +81,8 @@ impl<const D: usize, T: Scalar> Cast<D, T> {
         let (mut first, mut last) = (0.0f64, limit);
         for axis in 0..D {
             let (enter, leave) = self.meets(other, axis).when()?;
-            // Not by `max`: of 0.0 and -0.0 that may give either.
-            first = if enter > first { enter } else { first };
-            last = last.min(leave);
+            first = greater(enter, first);
+            last = lesser(leave, last);
         }
         (first <= last).then_some(first)
     }
@@ -104,8 +104,8 @@ impl<const D: usize, T: Scalar> Cast<D, T> {
             if meets.speed == 0.0 && !(meets.before < 0.0 && meets.behind > 0.0) {
                 return false;
             }
-            first = first.max(enter);
-            last = last.min(leave);
+            first = greater(enter, first);
+            last = lesser(leave, last);
         }
         match at {
             Some(at) => first < at && at < last && (0.0..=limit).contains(&at),
@@ -307,7 +307,7 @@ impl<const D: usize, T: Scalar> Queries<'_, D, T> {
                 && (!cast.ignores_touching || cast.enters(aabb))
             {
                 match visit(self.hit(cast, index, t)) {
-                    ControlFlow::Continue(lower) => limit.set(limit.get().min(lower)),
+                    ControlFlow::Continue(lower) => limit.set(lesser(lower, limit.get())),
                     ControlFlow::Break(()) => return ControlFlow::Break(()),
                 }
             }

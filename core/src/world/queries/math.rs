@@ -3,6 +3,7 @@
 //! Formulas are in `f64` and made of operations that round monotonically, so what contains a body is
 //! never farther than the body.
 
+use crate::float::greater;
 use crate::{Aabb, Error, Scalar};
 
 pub fn is_finite<T: Scalar>(value: T) -> bool {
@@ -39,7 +40,7 @@ pub fn check_each<Q>(queries: &[Q], fault: impl Fn(&Q) -> Fault) -> Result<(), E
 #[inline]
 fn gap<const D: usize, T: Scalar>(point: &[T; D], aabb: &Aabb<D, T>, axis: usize) -> f64 {
     let at = point[axis].to_f64();
-    (aabb.min[axis].to_f64() - at).max(at - aabb.max[axis].to_f64()).max(0.0)
+    greater(at - aabb.max[axis].to_f64(), greater(aabb.min[axis].to_f64() - at, 0.0))
 }
 
 /// Whether a box is at most `radius` away. Scaled by a power of two where squares of an `f64`

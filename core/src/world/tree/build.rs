@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 
 use super::edit::{Building, Entry, Tree};
 use super::node::{FAN, FILL, NONE, Node, finite, size};
+use crate::float::greatest;
 use crate::{Aabb, Scalar};
 
 /// Sample size for measuring how bodies spread. 64 instead takes 0.99 to 1.03 of the time.
@@ -365,8 +366,7 @@ fn sort_by_class<const D: usize, T: Scalar>(
 /// Sizes that differ by less than a factor of 8 on the longest axis are of one class, or of two
 /// neighboring ones.
 fn size_class<const D: usize, T: Scalar>(aabb: &Aabb<D, T>) -> usize {
-    let longest =
-        (0..D).map(|axis| finite(aabb.max[axis]) - finite(aabb.min[axis])).fold(0.0, f64::max);
+    let longest = greatest((0..D).map(|axis| finite(aabb.max[axis]) - finite(aabb.min[axis])));
     // The exponent, in threes; larger first, so that the many small classes come last.
     let exponent = (longest.to_bits() >> 52) as usize;
     2047 / 3 - exponent / 3

@@ -14,7 +14,7 @@ use crate::Scalar;
 use crate::memory::{OutOfMemory, prefetch_item, prefetch_pays, preload, reserve_for};
 use crate::sampling::positions;
 use crate::world::bodies::{Bodies, RANDOM_READ, When, flag};
-use crate::world::candidates::{Candidates, write_wanted};
+use crate::world::candidates::{CHUNK, Candidates, write_wanted};
 use crate::world::changes::Events;
 use crate::world::layout;
 use crate::world::policy::{Policy, TRIES_SAMPLES};
@@ -28,8 +28,6 @@ const AHEAD: usize = 24;
 /// to 1 %), always testing all takes 1.17 to 1.73 of the time; if the same ones move (up to 10 %), never
 /// doing so takes 1.0 to 1.33. Half as much is the same within 2 %.
 const SELECT: usize = 12;
-/// How many candidates are tested at a time: the list of those that matter stays in the cache, and short.
-const TESTED: usize = 2048;
 
 /// How many of the bodies that are looked up are tried first, and from how many on.
 const SAMPLE: usize = 64;
@@ -202,18 +200,16 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         } else if count * RANDOM_READ > bodies.boxes.len() {
             preload(&bodies.boxes);
         }
-        for start in (0..count).step_by(TESTED) {
-            let some = start..count.min(start + TESTED);
-            if scratch.positions.len() < some.len() {
-                scratch.positions.resize(some.len(), 0);
-            }
+        for start in (0..count).step_by(CHUNK) {
+            let some = start..count.min(start + CHUNK);
+            let mut listed = [0; CHUNK];
             let found = match (are_few, drops) {
-                (true, _) => scratch.list_changed(candidates, some),
-                (_, true) => scratch.list_flips::<true>(bodies, candidates, some),
-                (_, false) => scratch.list_flips::<false>(bodies, candidates, some),
+                (true, _) => scratch.list_changed(candidates, some, &mut listed),
+                (_, true) => scratch.list_flips::<true>(bodies, candidates, some, &mut listed),
+                (_, false) => scratch.list_flips::<false>(bodies, candidates, some, &mut listed),
             };
-            let Scratch { is_escaped, positions, dropped, .. } = &mut *scratch;
-            for &at in &positions[..found] {
+            let Scratch { is_escaped, dropped, .. } = &mut *scratch;
+            for at in listed[..found].iter().map(|&at| start + usize::from(at)) {
                 let [a, b] = candidates.listed()[at];
                 if drops && is_escaped[a as usize] | is_escaped[b as usize] {
                     dropped.push(at);
@@ -431,34 +427,39 @@ impl<const D: usize, T: Scalar> Scratch<D, T> {
         }
     }
 
-    /// Lists which of some candidates, by position, are of bodies that are flagged as changed. Returns how many.
-    fn list_changed(&mut self, candidates: &Candidates, some: Range<usize>) -> usize {
-        let Self { is_changed, positions, .. } = self;
-        write_wanted(positions, &candidates.listed()[some.clone()], |at, [a, b]| {
-            (some.start + at, is_changed[a as usize] | is_changed[b as usize])
+    /// Lists which of some candidates, by position among them, are of bodies that are flagged as changed. Returns how many.
+    fn list_changed(
+        &self,
+        candidates: &Candidates,
+        some: Range<usize>,
+        listed: &mut [u8; CHUNK],
+    ) -> usize {
+        write_wanted(listed, &candidates.listed()[some], |at, [a, b]| {
+            (at as u8, self.is_changed[a as usize] | self.is_changed[b as usize])
         })
     }
 
-    /// Tests some candidates, and lists the positions of those that begin or end and, if `DROPS`, of those
+    /// Tests some candidates, and lists the positions among them of those that begin or end and, if `DROPS`, of those
     /// of marked bodies. Returns how many.
     fn list_flips<const DROPS: bool>(
-        &mut self,
+        &self,
         bodies: &Bodies<D, T>,
         candidates: &Candidates,
         some: Range<usize>,
+        listed: &mut [u8; CHUNK],
     ) -> usize {
         let boxes = &bodies.boxes;
         let is_far = prefetch_pays(boxes);
         let (pairs, live) = (candidates.listed(), &candidates.live()[some.clone()]);
-        let Self { is_escaped, positions, .. } = self;
-        write_wanted(positions, &pairs[some.clone()], |at, [a, b]| {
+        let is_escaped = &self.is_escaped;
+        write_wanted(listed, &pairs[some.clone()], |at, [a, b]| {
             if is_far && let Some(&[_, later]) = pairs.get(some.start + at + AHEAD) {
                 // The first bodies of neighbors in the list are near each other in memory.
                 prefetch_item(boxes, later as usize);
             }
             let is_live = boxes[a as usize].overlaps_branch_free(&boxes[b as usize]);
             let is_dropped = DROPS && is_escaped[a as usize] | is_escaped[b as usize];
-            (some.start + at, (is_live != live[at]) | is_dropped)
+            (at as u8, (is_live != live[at]) | is_dropped)
         })
     }
 }

@@ -2,6 +2,7 @@
 
 use alloc::vec::Vec;
 
+use crate::float::greater;
 use crate::memory::{OutOfMemory, preload};
 use crate::sampling::positions;
 use crate::world::bodies::{Bodies, When, flag};
@@ -194,7 +195,7 @@ fn have_too_many<const D: usize, T: Scalar>(
     for index in positions(flags.len(), flags.len() / n) {
         if flags[index] & flag::LIVE != 0 {
             flags[index] |= flag::MARKED;
-            largest = longest_side(&fat[index]).max(largest);
+            largest = greater(longest_side(&fat[index]), largest);
         }
     }
     let is_large = |index: usize| longest_side(&fat[index]) > largest;

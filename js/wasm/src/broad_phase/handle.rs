@@ -117,11 +117,13 @@ impl Handle {
 }
 
 pub(super) fn id_of(generations: &[u32], number: f64) -> Option<ProxyId> {
-    // A number that is no id gives some slot; comparing the numbers afterwards refuses it.
-    let slot = number as i64 as u32 & ((1 << SLOT_BITS) - 1);
+    // A number that is no id gives some slot, or is not whole.
+    let whole = number as i64;
+    let slot = whole as u32 & ((1 << SLOT_BITS) - 1);
     let generation = *generations.get(slot as usize)?;
-    let id = ProxyId::from_bits(u64::from(generation) << 32 | u64::from(slot));
-    (Number::from_proxy(id).0 == number).then_some(id)
+    let is_id = whole as f64 == number
+        && whole >> SLOT_BITS == i64::from(generation & GENERATION_MASK);
+    is_id.then(|| ProxyId::from_bits(u64::from(generation) << 32 | u64::from(slot)))
 }
 
 /// Remembers the generation of an id, by its slot.
