@@ -772,6 +772,52 @@ fn check_queries_at_once(
     }
 }
 
+/// Four bodies for each box that is asked about, of which one may be hidden in each way.
+#[test]
+fn queries_at_once_find_no_body_that_is_hidden() {
+    const COUNT: usize = 1 << 15;
+    let boxes: Vec<_> = (0..COUNT).map(|at| Aabb::new([at as f32], [at as f32 + 0.5])).collect();
+    let areas: Vec<_> =
+        (0..COUNT / 4).map(|at| Aabb::new([at as f32 * 4.0], [at as f32 * 4.0 + 3.0])).collect();
+    let only = Filter::default().mask(1);
+    let is_other = |id: ProxyId| id.slot() != 9;
+    let without = |world: &mut BroadPhase<1>, id| world.remove(id).unwrap();
+    let refiltered = |world: &mut BroadPhase<1>, id| {
+        world.set_filter(id, Filter::default().category(2)).unwrap()
+    };
+    let disabled = |world: &mut BroadPhase<1>, id| world.set_enabled(id, false).unwrap();
+    let nothing = |_: &mut BroadPhase<1>, _| ();
+    for (way, hide) in [
+        ("none", nothing as fn(&mut BroadPhase<1>, ProxyId)),
+        ("removed", without),
+        ("another filter", refiltered),
+        ("disabled", disabled),
+        ("not wanted", nothing),
+        ("all filtered out", nothing),
+    ] {
+        let mut world = BroadPhase::<1>::new();
+        let ids = world.insert_many(&boxes, Filter::default()).unwrap();
+        world.update();
+        hide(&mut world, ids[9]);
+        let queries = match way {
+            "not wanted" => world.queries().with_predicate(&is_other),
+            "all filtered out" => world.queries().with_filter(Filter::default().mask(2)),
+            _ => world.queries().with_filter(only),
+        };
+        let mut lists = Lists::new();
+        queries.overlapping_many(&areas, &mut lists).unwrap();
+        for (at, list) in lists.iter().enumerate() {
+            let near = ids[4 * at..4 * at + 4].iter().copied();
+            let is_found = |id: &ProxyId| match way {
+                "none" => true,
+                "all filtered out" => false,
+                _ => *id != ids[9],
+            };
+            assert!(list.iter().copied().eq(near.filter(is_found)), "{way}: {at}");
+        }
+    }
+}
+
 #[test]
 fn changes_are_empty_only_if_nothing_began_and_nothing_ended() {
     let mut world = BroadPhase::<1>::new();

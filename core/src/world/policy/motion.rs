@@ -35,7 +35,7 @@ const LANDED: f64 = 0.4;
 /// The margin for inexact motion, in displacements.
 const SLACK: f64 = 0.125;
 /// How many bodies are sampled.
-const SAMPLE: usize = 128;
+const SAMPLE: usize = 512;
 
 impl Motion {
     /// Samples motion: the boxes that each body had at the last update and has now.

@@ -30,14 +30,14 @@ fn are_enough(bodies: usize, queries: usize, pays: &[[usize; 2]]) -> bool {
     pays.iter().any(|&[least, each]| bodies >= least && queries >= bodies / each)
 }
 
-/// Lists for each of many boxes, which are valid, the visible bodies whose boxes overlap it, in no particular order. Returns
-/// false if it takes less time one by one, or if the pairs of all are too many at once.
+/// Lists for each of many boxes, which are valid, the bodies whose boxes overlap it, unless they are not visible, in no
+/// particular order. Returns false if it takes less time one by one, or if the pairs of all are too many at once.
 #[inline(never)]
 pub fn list<const D: usize, T: Scalar>(
     areas: &[Aabb<D, T>],
     bodies: &Bodies<D, T>,
     sorted: &SortedBodies<D, T>,
-    is_visible: impl Fn(u32) -> bool,
+    is_visible: Option<impl Fn(u32) -> bool>,
     lists: &mut Lists<ProxyId>,
 ) -> bool {
     let (shapes, mut finder) = (bodies.shapes(), PairFinder::new());
@@ -48,7 +48,9 @@ pub fn list<const D: usize, T: Scalar>(
         found = matches!(search, Ok(Some(_))).then(|| finder.take_pairs());
     }
     let Some(mut pairs) = found else { return false };
-    pairs.retain(|&[_, body]| is_visible(body));
+    if let Some(is_visible) = is_visible {
+        pairs.retain(|&[_, body]| is_visible(body));
+    }
     place(&pairs, areas.len(), &bodies.slots, lists).is_ok()
 }
 

@@ -144,7 +144,7 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         lists: &mut Lists<ProxyId>,
     ) -> Result<(), Error> {
         crate::validate(areas)?;
-        let is_visible = |index| self.sees(index);
+        let is_visible = (!self.sees_all()).then_some(|index| self.sees(index));
         if at_once::may_pay(self.bodies, areas.len())
             && at_once::list(areas, self.bodies, self.sorted, is_visible, lists)
         {
@@ -340,6 +340,16 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         self.bodies.slots.has(index, flag::LIVE)
             && (self.bodies.rules.allow_all() && self.filter.is_none() || self.filter_sees(index))
             && self.predicate.is_none_or(|is_wanted| is_wanted(self.bodies.slots.id(index)))
+    }
+
+    /// Whether [`sees`](Self::sees) is true of every index, as it is where all bodies have the filter of the first and are there.
+    fn sees_all(&self) -> bool {
+        let Bodies { slots, rules, .. } = self.bodies;
+        slots.live == slots.len()
+            && slots.live > 0
+            && rules.allow_all()
+            && self.predicate.is_none()
+            && self.filter_sees(0)
     }
 
     /// Whether a body is enabled, and the filter of the queries allows its own.

@@ -121,8 +121,8 @@ pub(super) fn id_of(generations: &[u32], number: f64) -> Option<ProxyId> {
     let whole = number as i64;
     let slot = whole as u32 & ((1 << SLOT_BITS) - 1);
     let generation = *generations.get(slot as usize)?;
-    let is_id = whole as f64 == number
-        && whole >> SLOT_BITS == i64::from(generation & GENERATION_MASK);
+    let is_id =
+        whole as f64 == number && whole >> SLOT_BITS == i64::from(generation & GENERATION_MASK);
     is_id.then(|| ProxyId::from_bits(u64::from(generation) << 32 | u64::from(slot)))
 }
 
