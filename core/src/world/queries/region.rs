@@ -6,7 +6,7 @@ use core::ops::ControlFlow;
 
 use super::at_once;
 use super::lists::Lists;
-use super::math::{check_each, fault_in, is_finite, is_length, is_within};
+use super::math::{around, check_each, fault_in, is_finite, is_length, is_within};
 use super::sorted_bodies::SortedBodies;
 use crate::memory::{OutOfMemory, push, reserve_for};
 use crate::world::bodies::{Bodies, Filter, ProxyId, flag, sort_ids};
@@ -291,9 +291,12 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
 
     /// Appends the bodies whose boxes overlap a box, as far as there is memory.
     fn list_box(&self, area: &Aabb<D, T>, found: &mut Vec<ProxyId>) -> ControlFlow<()> {
-        self.tree.visit_overlapping(area, &mut |index| {
-            if self.is_in_box(index, area) {
-                push(found, self.bodies.slots.id(index))?;
+        let sees_all = self.sees_all();
+        self.tree.visit_overlapping(area, &mut |bodies| {
+            for index in bodies {
+                if self.bodies.shape(index).overlaps(area) && (sees_all || self.sees(index)) {
+                    push(found, self.bodies.slots.id(index))?;
+                }
             }
             ControlFlow::Continue(())
         })
@@ -306,17 +309,14 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         area: &Aabb<D, T>,
         visit: &mut dyn FnMut(ProxyId) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        self.tree.visit_overlapping(area, &mut |index| {
-            if self.is_in_box(index, area) {
-                visit(self.bodies.slots.id(index))?;
-            }
-            ControlFlow::Continue(())
+        self.tree.visit_overlapping(area, &mut |mut bodies| {
+            bodies.try_for_each(|index| {
+                if self.bodies.shape(index).overlaps(area) && self.sees(index) {
+                    return visit(self.bodies.slots.id(index));
+                }
+                ControlFlow::Continue(())
+            })
         })
-    }
-
-    #[inline]
-    fn is_in_box(&self, index: u32, area: &Aabb<D, T>) -> bool {
-        self.bodies.shape(index).overlaps(area) && self.sees(index)
     }
 
     /// Appends the bodies near a point, as far as there is memory.
@@ -325,11 +325,13 @@ impl<'w, const D: usize, T: Scalar> Queries<'w, D, T> {
         (center, radius): &([T; D], T),
         found: &mut Vec<ProxyId>,
     ) -> ControlFlow<()> {
-        let is_near = |bounds: &Aabb<D, T>| is_within(center, radius.to_f64(), bounds);
-        let bound = |bounds: &Aabb<D, T>| is_near(bounds).then_some(0.0);
-        self.tree.search(bound, |index| {
-            if is_near(self.bodies.shape(index)) && self.sees(index) {
-                push(found, self.bodies.slots.id(index))?;
+        let (radius, sees_all) = (radius.to_f64(), self.sees_all());
+        self.tree.visit_overlapping(&around(center, radius), &mut |bodies| {
+            for index in bodies {
+                let is_near = is_within(center, radius, self.bodies.shape(index));
+                if is_near && (sees_all || self.sees(index)) {
+                    push(found, self.bodies.slots.id(index))?;
+                }
             }
             ControlFlow::Continue(())
         })

@@ -126,6 +126,12 @@ impl<const D: usize, T: Scalar> Node<D, T> {
         })
     }
 
+    /// The items of which the bits are set.
+    #[inline]
+    pub fn items_of(&self, bits: u32) -> Items<'_> {
+        Items { items: &self.items, bits }
+    }
+
     /// A bit for each box that overlaps `area`. Written so that compilers test several at once.
     #[inline(never)]
     pub fn overlapping(&self, area: &Aabb<D, T>) -> u32 {
@@ -139,6 +145,26 @@ impl<const D: usize, T: Scalar> Node<D, T> {
         }
         let bits = (0..FAN).fold(0, |bits, lane| bits | apart[lane] & BITS[lane]);
         !bits & ((1 << self.count) - 1)
+    }
+}
+
+/// Some items of a node, by their bits.
+pub struct Items<'a> {
+    items: &'a [u32; FAN],
+    bits: u32,
+}
+
+impl Iterator for Items<'_> {
+    type Item = u32;
+
+    #[inline]
+    fn next(&mut self) -> Option<u32> {
+        if self.bits == 0 {
+            return None;
+        }
+        let lane = self.bits.trailing_zeros() as usize;
+        self.bits &= self.bits - 1;
+        Some(self.items[lane])
     }
 }
 

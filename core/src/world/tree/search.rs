@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
 use super::edit::Tree;
-use super::node::{FAN, NONE, sort_few};
+use super::node::{FAN, Items, NONE, sort_few};
 use crate::memory::reserve_for;
 use crate::{Aabb, Scalar};
 
@@ -127,12 +127,12 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         })
     }
 
-    /// Visits the bodies whose boxes overlap `area`, in no particular order, until `visit` breaks. It tests each node once, where
-    /// [`overlapping`](Self::overlapping) tests those above again on the way back.
+    /// Visits the bodies whose boxes overlap `area`, those of a leaf at a time, in no particular order, until `visit` breaks. It
+    /// tests each node once, where [`overlapping`](Self::overlapping) tests those above again on the way back.
     pub fn visit_overlapping(
         &self,
         area: &Aabb<D, T>,
-        visit: &mut dyn FnMut(u32) -> ControlFlow<()>,
+        visit: &mut dyn FnMut(Items<'_>) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         if self.root == NONE {
             return ControlFlow::Continue(());
@@ -144,18 +144,15 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
         &self,
         index: u32,
         area: &Aabb<D, T>,
-        visit: &mut dyn FnMut(u32) -> ControlFlow<()>,
+        visit: &mut dyn FnMut(Items<'_>) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let node = &self.nodes[index as usize];
-        let mut bits = node.overlapping(area);
-        while bits != 0 {
-            let item = node.items[bits.trailing_zeros() as usize];
-            bits &= bits - 1;
-            if node.is_leaf {
-                visit(item)?;
-            } else {
-                self.visit_overlapping_in(item, area, visit)?;
-            }
+        let overlapping = node.items_of(node.overlapping(area));
+        if node.is_leaf {
+            return visit(overlapping);
+        }
+        for child in overlapping {
+            self.visit_overlapping_in(child, area, visit)?;
         }
         ControlFlow::Continue(())
     }
