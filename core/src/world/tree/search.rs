@@ -60,10 +60,8 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
             leaves.iter().for_each(|&[_, leaf]| self.nodes[leaf as usize].prefetch());
             for &[index, leaf] in leaves {
                 let node = &self.nodes[leaf as usize];
-                let mut bits = node.overlapping(&queries[index as usize].1);
-                while bits != 0 {
-                    found.push([index, node.items[bits.trailing_zeros() as usize]]);
-                    bits &= bits - 1;
+                for body in node.items_of(node.overlapping(&queries[index as usize].1)) {
+                    found.push([index, body]);
                 }
             }
         }
@@ -89,13 +87,10 @@ impl<const D: usize, T: Scalar> Tree<D, T> {
             leaves.push([number, index]);
             return true;
         }
-        let mut bits = node.overlapping(area);
-        while bits != 0 {
-            let lane = bits.trailing_zeros() as usize;
-            bits &= bits - 1;
+        for child in node.items_of(node.overlapping(area)) {
             if node.has_leaves {
-                leaves.push([number, node.items[lane]]);
-            } else if !self.leaves_in(node.items[lane], number, area, leaves) {
+                leaves.push([number, child]);
+            } else if !self.leaves_in(child, number, area, leaves) {
                 return false;
             }
         }
