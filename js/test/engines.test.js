@@ -20,16 +20,16 @@ const nothing = undefined;
 const scene = { physics: { collisionProcessor: { getColliders: () => [], track() {}, untrack() {}, narrowphase: () => [] } } };
 const refused = [
   ["matter-js", () => matter.replaceBroadPhase(nothing), "`matter` is undefined; it must be the module matter-js, with `Detector`, `Collision` and `Bounds`"],
-  ["matter-js", () => matter.replaceBroadPhase(/** @type {any} */ ({ world: {} })), "`matter` is an Object; it must be the module matter-js, with `Detector`, `Collision` and `Bounds`"],
+  ["matter-js", () => matter.replaceBroadPhase(/** @type {any} */ ({ world: {} })), "`matter` is a Object; it must be the module matter-js, with `Detector`, `Collision` and `Bounds`"],
   ["cannon-es", () => cannon.replaceBroadPhase(nothing), "`world` is undefined; it must be a `World` of cannon-es, with `bodies` and `broadphase`"],
-  ["cannon-es", () => cannon.replaceBroadPhase(/** @type {any} */ ([])), "`world` is an Array; it must be a `World` of cannon-es, with `bodies` and `broadphase`"],
+  ["cannon-es", () => cannon.replaceBroadPhase(/** @type {any} */ ([])), "`world` is a Array; it must be a `World` of cannon-es, with `bodies` and `broadphase`"],
   ["excalibur", () => excalibur.replaceBroadPhase(nothing, nothing), "`scene` is undefined; it must be a `Scene` of Excalibur, with `physics.collisionProcessor`"],
   ["excalibur", () => excalibur.replaceBroadPhase(scene, nothing), "`excalibur` is undefined; it must be the module excalibur, with `BodyComponent`, `CollisionGroup` and `Pair`"],
   ["phaser", () => phaser.replaceBroadPhase(nothing), "`scene` is undefined; it must be a `Scene` of Phaser with arcade physics, with `physics.world`"],
-  ["phaser", () => phaser.replaceBroadPhase(/** @type {any} */ ({ matter: {} })), "`scene` is an Object; it must be a `Scene` of Phaser with arcade physics, with `physics.world`"],
+  ["phaser", () => phaser.replaceBroadPhase(/** @type {any} */ ({ matter: {} })), "`scene` is a Object; it must be a `Scene` of Phaser with arcade physics, with `physics.world`"],
   ["pixi", () => pixi.insertObjects(nothing, []), '`world` is undefined; it must be a `BroadPhase` of "sweep-and-prune/broad-phase"'],
   ["pixi", () => pixi.insertObjects(new BroadPhase({ dimensions: 2 }), /** @type {any} */ ([sprite(0), "a sprite"])), "`objects[1]` is a string; it must be a `Container` of Pixi"],
-  ["three", () => three.insertObjects(new BroadPhase({ dimensions: 3 }), /** @type {any} */ ({})), "`objects` is an Object; it must be an array, each of which is an `Object3D` of three.js"],
+  ["three", () => three.insertObjects(new BroadPhase({ dimensions: 3 }), /** @type {any} */ ({})), "`objects` is a Object; it must be an array, each of which is an `Object3D` of three.js"],
   ["three", () => three.moveObjects(nothing), '`world` is undefined; it must be a `BroadPhase` of "sweep-and-prune/broad-phase"'],
   ["three", () => three.pick(new BroadPhase({ dimensions: 3 }), nothing), "`raycaster` is undefined; it must be a `Raycaster` of three.js"],
 ];
