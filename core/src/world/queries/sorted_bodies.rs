@@ -187,6 +187,7 @@ mod tests {
     use alloc::vec;
 
     use super::*;
+    use crate::{BroadPhase, Filter, Lists, Options, ProxyId, Report};
 
     /// Unit boxes 2 apart, of which each overlaps one of the same place.
     fn boxes(count: u16, y: f32) -> Vec<Aabb<2>> {
@@ -281,5 +282,61 @@ mod tests {
             tries += usize::from(*sorted.misses.get_mut() < misses);
         }
         assert_eq!(tries, 5); // after 2, 4, 8, 16 and 32 misses
+    }
+
+    /// Asks a world, and checks what it answers.
+    fn ask_world(world: &mut BroadPhase<2>) {
+        let (areas, mut lists) = (boxes(8192, 0.5), Lists::new());
+        world.queries().overlapping_many(&areas, &mut lists).unwrap();
+        let ids: Vec<ProxyId> = world.ids().collect();
+        let bodies: Vec<_> = ids.iter().map(|&id| world.aabb(id).unwrap()).collect();
+        let mut expected = vec![Vec::new(); areas.len()];
+        for &[area, body] in PairFinder::new().find_between(&areas, &bodies).unwrap() {
+            expected[area as usize].push(ids[body as usize]);
+        }
+        expected.iter_mut().for_each(|ids| ids.sort_unstable());
+        assert!(lists.iter().eq(&expected));
+    }
+
+    #[test]
+    fn boxes_that_change_in_any_way_after_they_were_sorted_are_found() {
+        let near = |y: f32| Aabb::new([1.5, y], [1.75, y + 9.0]);
+        let fat = Report::Fat { margin: 0.1, prediction: 2.0 };
+        for report in [Report::Exact, fat] {
+            let options = Options { report, ..Options::default() };
+            let mut world = BroadPhase::<2>::with_options(options).unwrap();
+            let ids = world.insert_many(&boxes(8192, 0.0), Filter::default()).unwrap();
+            world.update();
+            let other = world.clone();
+            let edits: [&dyn Fn(&mut BroadPhase<2>); 11] = [
+                &|world| world.set(ids[5], near(0.0)).unwrap(),
+                // Within the same fat AABB.
+                &|world| world.set(ids[5], near(0.01)).unwrap(),
+                &|world| world.set_many(&ids, &boxes(8192, 0.25)).unwrap(),
+                &|world| world.teleport(ids[6], near(1.0)).unwrap(),
+                &|world| world.set_swept(ids[7], near(2.0), near(30.0)).unwrap(),
+                &|world| _ = world.update(),
+                &|world| _ = world.insert(near(3.0)).unwrap(),
+                &|world| {
+                    world.remove(ids[8]).unwrap();
+                    world.update();
+                    world.insert(near(4.0)).unwrap();
+                },
+                &|world| world.shift([0.5, 0.0]).unwrap(),
+                &|world| world.clone_from(&other),
+                &|world| {
+                    world.set_many(&ids[..99], &boxes(99, 0.75)).unwrap();
+                    world.update();
+                },
+            ];
+            for edit in edits {
+                for _ in 0..9 {
+                    ask_world(&mut world);
+                }
+                assert!(world.tracking.sorted.sorted.is_some());
+                edit(&mut world);
+                ask_world(&mut world);
+            }
+        }
     }
 }
