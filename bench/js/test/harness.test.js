@@ -27,7 +27,7 @@ test("every light library finds the right pairs and is timed, at rest and in mot
   const libraries = light.map(({ name }) => name).join();
   const { status, stdout, stderr } = spawnSync(
     process.execPath,
-    [main, "--scenes", "mixed,drift", "--sizes", "150", "--rounds", "1", "--no-native", "--libraries", libraries, "--output", output],
+    [main, "--scenes", "mixed,drift", "--sizes", "150", "--rounds", "1", "--limit", "1000", "--no-native", "--libraries", libraries, "--output", output],
     { encoding: "utf8" },
   );
   assert.equal(status, 0, stderr);

@@ -300,7 +300,8 @@ mod tests {
 
     #[test]
     fn boxes_that_change_in_any_way_after_they_were_sorted_are_found() {
-        let near = |y: f32| Aabb::new([1.5, y], [1.75, y + 9.0]);
+        // Each edit changes what is found.
+        let near = |y: f32| Aabb::new([60.5, y], [60.75, y + 9.0]);
         let fat = Report::Fat { margin: 0.1, prediction: 2.0 };
         for report in [Report::Exact, fat] {
             let options = Options { report, ..Options::default() };
@@ -311,8 +312,8 @@ mod tests {
             let edits: [&dyn Fn(&mut BroadPhase<2>); 11] = [
                 &|world| world.set(ids[5], near(0.0)).unwrap(),
                 // Within the same fat AABB.
-                &|world| world.set(ids[5], near(0.01)).unwrap(),
-                &|world| world.set_many(&ids, &boxes(8192, 0.25)).unwrap(),
+                &|world| world.set(ids[5], near(-0.55)).unwrap(),
+                &|world| world.set_many(&ids, &boxes(8192, 1.75)).unwrap(),
                 &|world| world.teleport(ids[6], near(1.0)).unwrap(),
                 &|world| world.set_swept(ids[7], near(2.0), near(30.0)).unwrap(),
                 &|world| _ = world.update(),
@@ -322,10 +323,10 @@ mod tests {
                     world.update();
                     world.insert(near(4.0)).unwrap();
                 },
-                &|world| world.shift([0.5, 0.0]).unwrap(),
+                &|world| world.shift([1.25, 0.0]).unwrap(),
                 &|world| world.clone_from(&other),
                 &|world| {
-                    world.set_many(&ids[..99], &boxes(99, 0.75)).unwrap();
+                    world.set_many(&ids[..99], &boxes(99, 1.75)).unwrap();
                     world.update();
                 },
             ];
