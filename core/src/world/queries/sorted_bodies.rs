@@ -310,9 +310,14 @@ mod tests {
             world.update();
             let other = world.clone();
             let edits: [&dyn Fn(&mut BroadPhase<2>); 11] = [
-                &|world| world.set(ids[5], near(0.0)).unwrap(),
-                // Within the same fat AABB.
-                &|world| world.set(ids[5], near(-0.55)).unwrap(),
+                &|world| world.set(ids[5], near(-0.48)).unwrap(),
+                // A fat AABB stays the same.
+                &|world| {
+                    world.update();
+                    let reported = world.reported_aabb(ids[5]).unwrap();
+                    assert_eq!(reported.contains(&near(-0.52)), report.is_fat());
+                    world.set(ids[5], near(-0.52)).unwrap();
+                },
                 &|world| world.set_many(&ids, &boxes(8192, 1.75)).unwrap(),
                 &|world| world.teleport(ids[6], near(1.0)).unwrap(),
                 &|world| world.set_swept(ids[7], near(2.0), near(30.0)).unwrap(),
