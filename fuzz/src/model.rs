@@ -9,7 +9,7 @@ pub type Pair = [ProxyId; 2];
 
 /// What the model knows of a body.
 #[derive(Clone, Debug)]
-pub struct Body<const D: usize, T> {
+pub struct Body<const D: usize, T: Scalar> {
     /// Its box as given.
     pub aabb: Aabb<D, T>,
     /// The box whose overlaps are reported.
@@ -26,7 +26,7 @@ pub struct Body<const D: usize, T> {
 
 /// What a body had at the last update.
 #[derive(Clone, Debug)]
-struct AtUpdate<const D: usize, T> {
+struct AtUpdate<const D: usize, T: Scalar> {
     /// Its box as given, or the one to which it was teleported since.
     from: Aabb<D, T>,
     /// Its box that was reported.
@@ -35,7 +35,7 @@ struct AtUpdate<const D: usize, T> {
 
 /// A broad phase that is too simple to be wrong: it tests each body against each.
 #[derive(Clone, Debug)]
-pub struct Model<const D: usize, T> {
+pub struct Model<const D: usize, T: Scalar> {
     report: Report<T>,
     /// All bodies by id.
     pub bodies: BTreeMap<ProxyId, Body<D, T>>,

@@ -102,7 +102,7 @@ fn direction<const D: usize>(random: &mut Random) -> [f64; D] {
 
 /// Boxes in motion: one frame, and how to get to the next.
 #[derive(Clone, Debug)]
-pub struct Moving<const D: usize, T = f32> {
+pub struct Moving<const D: usize, T: Scalar = f32> {
     half: f64,
     centers: Vec<[f64; D]>,
     velocities: Vec<[f64; D]>,

@@ -8,7 +8,7 @@ use crate::{Aabb, Scalar};
 /// intersection reports it: where, on each cut axis, at least one of the two boxes begins. So bit
 /// `axis` of `dedup` is set if the box began in an earlier column on that axis, and a pair whose
 /// bitmaps share a bit is left to another column.
-#[derive(Clone, Copy, Debug)]
+#[derive(Copy, Debug)]
 #[repr(C)]
 pub(super) struct Record<const D: usize, T> {
     pub aabb: Aabb<D, T>,
@@ -16,6 +16,14 @@ pub(super) struct Record<const D: usize, T> {
     pub id: u32,
     /// The dedup bitmap.
     pub dedup: u32,
+}
+
+// Not derived, as that of boxes.
+impl<const D: usize, T: Copy> Clone for Record<D, T> {
+    #[inline]
+    fn clone(&self) -> Self {
+        *self
+    }
 }
 
 /// A box as it stands in a set of boxes to search, which is a slice.

@@ -150,7 +150,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
     /// # Errors
     /// [`Error::StaleProxy`].
     pub fn reported_aabb(&self, id: ProxyId) -> Result<Aabb<D, T>, Error> {
-        Ok(self.bodies.boxes[self.bodies.slots.check(id, 0)? as usize])
+        Ok(self.bodies.boxes.now()[self.bodies.slots.check(id, 0)? as usize])
     }
 
     /// The filter of a body.
@@ -308,7 +308,7 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         if slots.has(index, flag::NEW) {
             // No update knew it.
         } else if tracking.tree.is_fresh() && tracking.flying.is_empty() {
-            let near = tracking.tree.tree().overlapping(bodies.previous[index as usize]);
+            let near = tracking.tree.tree().overlapping(bodies.boxes.previous()[index as usize]);
             others.extend(near.filter(|&other| {
                 other != index
                     && slots.has(other, flag::LIVE | flag::LEAVING)

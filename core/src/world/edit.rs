@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::bodies::{Bodies, Filter, ProxyId, flag};
+use super::bodies::{Bodies, Filter, ProxyId, REPLACES_ALL, flag};
 use super::broad_phase::BroadPhase;
 use crate::memory::{prefetch_item, prefetch_pays, preload};
 use crate::{Aabb, Error, Scalar, validate};
@@ -69,7 +69,13 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
         let rows = ids.iter().zip(boxes);
         let is_sound =
             |(&id, aabb): (&ProxyId, &Aabb<D, T>)| bodies.slots.is_living(id) & is_valid(aabb);
-        if !rows.clone().map(is_sound).fold(true, |all, each| all & each) {
+        let are_all = REPLACES_ALL && bodies.slots.are_all(ids);
+        let are_sound = if are_all {
+            boxes.iter().map(is_valid).fold(true, |all, each| all & each)
+        } else {
+            rows.clone().map(is_sound).fold(true, |all, each| all & each)
+        };
+        if !are_sound {
             for (position, (&id, aabb)) in rows.clone().enumerate() {
                 bodies.slots.check(id, position)?;
                 aabb.check(position)?;
@@ -80,29 +86,35 @@ impl<const D: usize, T: Scalar> BroadPhase<D, T> {
                 bodies.cancel_sweep(bodies.slots.index_of[id.slot() as usize]);
             }
         }
-        let index_of =
-            |bodies: &Bodies<D, T>, id: &ProxyId| bodies.slots.index_of[id.slot() as usize];
         // Of many boxes the update finds out which differ from those of the last one.
         if bodies.scans_all(ids.len()) && !bodies.options.report.is_fat() {
             bodies.edits.touch_all();
-            let is_far = bodies.slots.is_reordered && prefetch_pays(&bodies.boxes);
+            let Bodies { slots, boxes: table, .. } = bodies;
+            if are_all {
+                table.replace(boxes, slots.is_reordered.then_some(&slots.slot_of));
+                return Ok(());
+            }
+            let table = table.now_mut();
+            let index_of = |id: &ProxyId| slots.index_of[id.slot() as usize] as usize;
+            let is_far = slots.is_reordered && prefetch_pays(table);
             for (position, (id, aabb)) in rows.enumerate() {
                 if is_far && let Some(later) = ids.get(position + AHEAD) {
-                    prefetch_item(&bodies.boxes, index_of(bodies, later) as usize);
+                    prefetch_item(table, index_of(later));
                 }
-                let index = index_of(bodies, id) as usize;
-                bodies.boxes[index] = *aabb;
+                table[index_of(id)] = *aabb;
             }
             return Ok(());
         }
-        preload(&bodies.boxes[..bodies.rows_to_scan(ids.len())]);
+        let index_of =
+            |bodies: &Bodies<D, T>, id: &ProxyId| bodies.slots.index_of[id.slot() as usize];
+        preload(&bodies.boxes.now()[..bodies.rows_to_scan(ids.len())]);
         bodies.edits.reserve(ids.len());
-        let is_far = prefetch_pays(&bodies.boxes);
+        let is_far = prefetch_pays(bodies.boxes.now());
         for (position, (id, aabb)) in rows.enumerate() {
             // Rows are in the order of space, ids are not: rows are read all over the tables.
             if is_far && let Some(later) = ids.get(position + AHEAD) {
                 let index = index_of(bodies, later) as usize;
-                prefetch_item(&bodies.boxes, index);
+                prefetch_item(bodies.boxes.now(), index);
                 prefetch_item(&bodies.slots.flags, index);
             }
             bodies.place(index_of(bodies, id), aabb);

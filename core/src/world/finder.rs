@@ -82,7 +82,7 @@ impl<const D: usize, T: Scalar> Finder<D, T> {
     ) -> Result<Option<&[[u32; 2]]>, OutOfMemory> {
         self.sets.all.clear();
         self.sets.all.extend_from_slice(some);
-        self.find_in_sets(&bodies.boxes, bodies, When::Now, most)
+        self.find_in_sets(bodies.boxes.now(), bodies, When::Now, most)
     }
 
     #[inline(never)]

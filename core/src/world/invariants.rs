@@ -6,7 +6,8 @@
 //! | `LEAVING`, `edits.leaving()` | removal | the next update | not `LIVE`; its pairs end at the next update |
 //! | `CHANGED`, `edits.changed()` | every edit of a box, filter or exclusion | the next update | without it the box is that of the last update, unless `edits.any_unlisted()` |
 //! | `edits.any_unlisted()` | edits of all boxes at once | the next update or query, which compares all boxes | nothing: boxes may have changed without the flag |
-//! | `NEW`, `edits.any_new()` | insertion | the next update | `CHANGED`; in no pair yet; `previous` and `fat` are meaningless |
+//! | `NEW`, `edits.any_new()` | insertion | the next update | `CHANGED`; in no pair yet; `boxes.previous()` and `fat` are meaningless |
+//! | `boxes.previous()` has a table of its own | the first edit of a box | an update that reads all boxes | without it no box changed |
 //! | `REFILTERED` | `set_filter` | the next update | `CHANGED`; the filter of the last update is kept beside |
 //! | `SWEPT`, `sweeps` | `sweep` | the next update, or another edit of the box | `LIVE` |
 //! | `MOVED`, `moved` | edits of the box, where fat AABBs are reported | the next update | nothing without fat AABBs |
@@ -67,7 +68,8 @@ fn slots<const D: usize, T: Scalar>(bodies: &Bodies<D, T>) -> Claims<4> {
 }
 
 fn tables<const D: usize, T: Scalar>(bodies: &Bodies<D, T>) -> Claims<4> {
-    let Bodies { options, slots, boxes, displacements, previous, .. } = bodies;
+    let Bodies { options, slots, boxes, displacements, .. } = bodies;
+    let (boxes, previous) = (boxes.now(), boxes.previous());
     let (shapes, origins) = (displacements.shapes(), displacements.origins());
     let has_shapes = options.report.is_fat();
     let shaped = if has_shapes { slots.len() } else { 0 };
@@ -87,7 +89,8 @@ fn tables<const D: usize, T: Scalar>(bodies: &Bodies<D, T>) -> Claims<4> {
 }
 
 fn lists<const D: usize, T: Scalar>(bodies: &Bodies<D, T>) -> Claims<8> {
-    let Bodies { slots, boxes, previous, edits, displacements, sweeps, .. } = bodies;
+    let Bodies { slots, boxes, edits, displacements, sweeps, .. } = bodies;
+    let (boxes, previous) = (boxes.now(), boxes.previous());
     let is_leaving =
         |&index: &u32| slots.has(index, flag::LEAVING) && !slots.has(index, flag::LIVE);
     let has = |index, flags| slots.has(index, flags);
@@ -154,7 +157,8 @@ fn fat_aabbs<const D: usize, T: Scalar>(
     let slots = &bodies.slots;
     let Tracking { fat, is_fat_stale, tree, .. } = tracking;
     let known = || living(bodies).filter(|&index| !slots.has(index, flag::NEW));
-    let is_inside = |index: u32| fat[index as usize].contains(&bodies.previous[index as usize]);
+    let previous = bodies.boxes.previous();
+    let is_inside = |index: u32| fat[index as usize].contains(&previous[index as usize]);
     let is_held = |index| slots.has(index, flag::FLYING) || tree.tree().holds(index);
     [
         (

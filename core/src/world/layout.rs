@@ -98,10 +98,11 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     /// Moves all rows to their new indices.
     fn apply_order(&mut self, bodies: &mut Bodies<D, T>) {
         let permutation = &mut self.scratch.permutation;
-        let Bodies { slots, boxes, previous, edits, displacements, sweeps, .. } = bodies;
+        let Bodies { slots, boxes, edits, displacements, sweeps, .. } = bodies;
         let ([shapes, origins], [moved, too_wide]) = displacements.stored();
         let (ends, swept) = sweeps.stored();
-        for table in [boxes, shapes, origins, previous, ends, &mut self.fat] {
+        let [now, previous] = boxes.stored();
+        for table in [now, previous, shapes, origins, ends, &mut self.fat] {
             permutation.move_boxes(table);
         }
         for table in bodies.rules.tables() {

@@ -117,10 +117,11 @@ impl<const D: usize, T: Scalar> SearchTree<D, T> {
             if !bodies.slots.has(index, flag::LIVE) {
                 continue;
             }
+            let aabb = &bodies.boxes.now()[row];
             if bodies.slots.has(index, flag::NEW) {
-                self.tree.set(index, &bodies.boxes[row]);
-            } else if !fat[row].contains(&bodies.boxes[row]) {
-                self.tree.set(index, &fat[row].union(&bodies.boxes[row]));
+                self.tree.set(index, aabb);
+            } else if !fat[row].contains(aabb) {
+                self.tree.set(index, &fat[row].union(aabb));
             }
         }
         // A body that changes between queries is listed each time: without updates the list would grow.
@@ -147,12 +148,13 @@ impl<const D: usize, T: Scalar> SearchTree<D, T> {
         for &index in bodies.edits.leaving() {
             self.tree.remove(index);
         }
+        let (boxes, previous) = (bodies.boxes.now(), bodies.boxes.previous());
         moved.clear();
         moved.extend(bodies.edits.changed().iter().copied().filter(|&index| {
             let row = index as usize;
             bodies.slots.has(index, flag::LIVE)
                 && (bodies.slots.has(index, flag::NEW)
-                    || motion.is_jump(&bodies.previous[row], &bodies.boxes[row]))
+                    || motion.is_jump(&previous[row], &boxes[row]))
         }));
         if moved.len() * MOVED[usize::from(is_queried)] > self.tree.count {
             self.abandon();

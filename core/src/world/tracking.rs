@@ -77,9 +77,9 @@ pub struct Scratch<const D: usize, T: Scalar> {
 impl<const D: usize, T: Scalar> Tracking<D, T> {
     /// Makes the fat AABBs as many as the bodies, and writes them if they are stale.
     pub fn refresh_fat(&mut self, bodies: &Bodies<D, T>) {
-        self.fat.extend_from_slice(&bodies.boxes[self.fat.len()..]);
+        self.fat.extend_from_slice(&bodies.boxes.now()[self.fat.len()..]);
         if core::mem::take(&mut self.is_fat_stale) {
-            self.fat.copy_from_slice(&bodies.previous);
+            self.fat.copy_from_slice(bodies.boxes.previous());
         }
     }
 

@@ -1,5 +1,6 @@
 //! The bodies: their ids, filters and boxes, and what was done to them since the last update.
 
+mod boxes;
 mod displacements;
 mod edits;
 mod exclusions;
@@ -11,6 +12,7 @@ mod slots;
 mod sweeps;
 mod table;
 
+pub(super) use boxes::REPLACES_ALL;
 pub(super) use exclusions::{BEFORE, NOW};
 pub use filter::Filter;
 pub use id::{ProxyId, sort_ids};

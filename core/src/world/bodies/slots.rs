@@ -119,6 +119,15 @@ impl Slots {
             .is_some_and(|&living| (living == id.generation) & (living != 0))
     }
 
+    /// Whether these are the ids of living bodies, one of each slot and in their order: then no slot is free.
+    pub fn are_all(&self, ids: &[ProxyId]) -> bool {
+        let is_own = |((slot, id), &living): ((u32, &ProxyId), &u32)| {
+            (id.slot == slot) & (id.generation == living) & (living != 0)
+        };
+        let slots = (0..).zip(ids).zip(&self.living);
+        ids.len() == self.len() && slots.map(is_own).fold(true, |all, each| all & each)
+    }
+
     /// The index of a living body; `position` is that of its id in the argument, for the error.
     #[inline]
     pub fn check(&self, id: ProxyId, position: usize) -> Result<u32, Error> {

@@ -1,12 +1,10 @@
 //! The tables of bodies: what the next update compares, the world now and at the last update.
 
-use alloc::vec::Vec;
-
+use super::boxes::Boxes;
 use super::displacements::Displacements;
 use super::edits::Edits;
 use super::filter::Filter;
 use super::id::ProxyId;
-use super::rows::put_row;
 use super::rules::{Rules, When};
 use super::slots::{Slots, flag};
 use super::sweeps::Sweeps;
@@ -25,15 +23,13 @@ const SCAN_ALL: usize = 4;
 pub struct Bodies<const D: usize, T: Scalar> {
     pub options: Options<T>,
     pub slots: Slots,
-    /// The boxes whose overlaps are reported.
-    pub boxes: Vec<Aabb<D, T>>,
+    /// The boxes whose overlaps are reported, now and at the last update.
+    pub boxes: Boxes<D, T>,
     /// The boxes as given, where these are not the ones reported.
     pub displacements: Displacements<D, T>,
     pub sweeps: Sweeps<D, T>,
     /// Which bodies may pair.
     pub rules: Rules,
-    /// The boxes at the last update. Meaningless for bodies of [`flag::NEW`].
-    pub previous: Vec<Aabb<D, T>>,
     /// What was done since the last update.
     pub edits: Edits,
     /// Bodies that moved recently have smaller indices than this, with few exceptions.
@@ -42,7 +38,7 @@ pub struct Bodies<const D: usize, T: Scalar> {
 
 clone_fields! {
     [const D: usize, T: Scalar] Bodies<D, T> {
-        options, slots, boxes, displacements, sweeps, rules, previous, edits, front,
+        options, slots, boxes, displacements, sweeps, rules, edits, front,
     }
 }
 
@@ -68,7 +64,7 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
     /// The boxes as given, by slot, of free slots those of their last bodies.
     pub fn shapes(&self) -> &[Aabb<D, T>] {
         match self.options.report {
-            Report::Exact => &self.boxes,
+            Report::Exact => self.boxes.now(),
             Report::Fat { .. } => self.displacements.shapes(),
         }
     }
@@ -83,12 +79,10 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
         if self.options.report.is_fat() {
             self.displacements.put(index, shape);
         }
-        put_row(&mut self.boxes, index, boxed);
+        let rows = self.boxes.len();
+        self.front += usize::from(index as usize == rows && self.front == rows);
+        self.boxes.put(index, boxed);
         self.rules.put(index, filter);
-        if self.previous.len() < self.boxes.len() {
-            self.front += usize::from(self.front == self.previous.len());
-            self.previous.push(boxed);
-        }
     }
 
     /// Adds a body, for which there is a slot.
@@ -107,8 +101,8 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
         let row = index as usize;
         match self.options.report {
             Report::Exact => {
-                if differ(&self.boxes[row], aabb) {
-                    self.boxes[row] = *aabb;
+                if differ(&self.boxes.now()[row], aabb) {
+                    self.boxes.now_mut()[row] = *aabb;
                     self.touch(index);
                 }
             }
@@ -128,8 +122,8 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
         // The union of a sweep is no place where the body was.
         let rests = is_new || self.slots.has(index, flag::SWEPT);
         let had = || match self.displacements.shifted() {
-            Some(offset) => self.previous[row].translate(offset),
-            None => self.previous[row],
+            Some(offset) => self.boxes.previous()[row].translate(offset),
+            None => self.boxes.previous()[row],
         };
         let from = if rests { shape } else { &self.displacements.origins()[row] };
         self.options.report.boxed((!is_new).then(had), from, shape)
@@ -139,8 +133,8 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
     #[inline(never)]
     fn refatten(&mut self, index: u32) {
         let fat = self.fat(index);
-        if differ(&self.boxes[index as usize], &fat) {
-            self.boxes[index as usize] = fat;
+        if differ(&self.boxes.now()[index as usize], &fat) {
+            self.boxes.now_mut()[index as usize] = fat;
             self.touch(index);
         }
     }
@@ -148,7 +142,7 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
     /// Whether the fat AABB of a body is another one than follows from its box: then it is replaced at the next update,
     /// if the body rests.
     pub fn is_too_wide(&self, index: u32) -> bool {
-        differ(&self.boxes[index as usize], &self.fat(index))
+        differ(&self.boxes.now()[index as usize], &self.fat(index))
     }
 
     /// Replaces the fat AABBs that are too wide for bodies that rest since the last update.
@@ -179,7 +173,7 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
 
     /// Moves everything by a finite offset.
     pub fn shift(&mut self, offset: &[T; D]) {
-        self.boxes.iter_mut().for_each(|aabb| *aabb = aabb.translate(*offset));
+        self.boxes.now_mut().iter_mut().for_each(|aabb| *aabb = aabb.translate(*offset));
         self.sweeps.shift(offset);
         self.edits.touch_all();
         if self.options.report.is_fat() {
@@ -225,8 +219,8 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
             for index in 0..self.slots.len() {
                 let flags = self.slots.flags[index];
                 // The previous box of a new body is that of the body that had the slot before.
-                let is_changed =
-                    flags & flag::NEW != 0 || differ(&self.boxes[index], &self.previous[index]);
+                let (now, before) = (&self.boxes.now()[index], &self.boxes.previous()[index]);
+                let is_changed = flags & flag::NEW != 0 || differ(now, before);
                 if flags & flag::LIVE != 0 && is_changed {
                     self.touch(index as u32);
                 }
@@ -236,18 +230,18 @@ impl<const D: usize, T: Scalar> Bodies<D, T> {
 
     /// Whether two bodies are there, overlap, and may pair.
     pub fn is_live(&self, [a, b]: [u32; 2]) -> bool {
-        let (first, second) = (a as usize, b as usize);
+        let boxes = self.boxes.now();
         self.slots.has(a, flag::LIVE)
             && self.slots.has(b, flag::LIVE)
-            && self.boxes[first].overlaps_branch_free(&self.boxes[second])
+            && boxes[a as usize].overlaps_branch_free(&boxes[b as usize])
             && self.allows([a, b])
     }
 
     /// Whether a pair was live at the last update. Compiled once in WebAssembly, where files are to stay small.
     #[cfg_attr(target_arch = "wasm32", inline(never))]
     pub fn was_live(&self, [a, b]: [u32; 2]) -> bool {
-        self.previous[a as usize].overlaps_branch_free(&self.previous[b as usize])
-            && self.was_allowed([a, b])
+        let boxes = self.boxes.previous();
+        boxes[a as usize].overlaps_branch_free(&boxes[b as usize]) && self.was_allowed([a, b])
     }
 
     /// Whether the last update knew two bodies, and their filters allowed them to pair then.

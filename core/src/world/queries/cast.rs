@@ -16,7 +16,7 @@ use crate::{Aabb, Error, Scalar};
 /// A ray or a moving box, made by [`ray`](Self::ray) or [`aabb`](Self::aabb).
 ///
 /// It is at `from + t * direction` for each t from 0 to `limit`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Cast<const D: usize, T = f32> {
     /// The box at t = 0; for a ray a point, its origin.
@@ -27,6 +27,14 @@ pub struct Cast<const D: usize, T = f32> {
     pub limit: T,
     /// Whether it passes what it only touches: see [`ignore_touching`](Self::ignore_touching).
     pub ignores_touching: bool,
+}
+
+// Not derived, as that of boxes.
+impl<const D: usize, T: Copy> Clone for Cast<D, T> {
+    #[inline]
+    fn clone(&self) -> Self {
+        *self
+    }
 }
 
 impl<const D: usize, T: Scalar> Cast<D, T> {

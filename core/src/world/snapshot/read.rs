@@ -90,7 +90,7 @@ fn read_slot<const D: usize, T: Scalar>(
     let filter = if has(holds::FILTER) { reader.filter()? } else { Filter::default() };
     let old_box = if has(holds::OLD_BOX) { reader.aabb()? } else { boxed };
     bodies.put(index, shape, boxed, filter);
-    bodies.previous[index as usize] = old_box;
+    bodies.boxes.put_previous(index, old_box);
     if has(holds::ORIGIN) {
         bodies.displacements.put_origin(&mut bodies.slots, index, origin);
     }

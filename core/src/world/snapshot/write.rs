@@ -46,14 +46,14 @@ fn put_slot<const D: usize, T: Scalar>(bytes: &mut Vec<u8>, bodies: &Bodies<D, T
     let row = index as usize;
     let flags = bodies.slots.flags[row];
     let is_known = flags & (flag::LIVE | flag::LEAVING) != 0 && flags & flag::NEW == 0;
-    let old_box = Some(&bodies.previous[row]).filter(|_| is_known);
+    let old_box = Some(&bodies.boxes.previous()[row]).filter(|_| is_known);
     let old_filter =
         Some(bodies.rules.filter(&bodies.slots, index, When::LastUpdate)).filter(|_| is_known);
     // A body that left is only what it was at the last update.
     let is_live = flags & flag::LIVE != 0;
     let (filter, old_box, old_filter) = if is_live {
         let filter = bodies.rules.filter_now(index);
-        let old_box = old_box.filter(|&old| differ(old, &bodies.boxes[row]));
+        let old_box = old_box.filter(|&old| differ(old, &bodies.boxes.now()[row]));
         (Some(filter), old_box, old_filter.filter(|&old| old != filter))
     } else {
         (old_filter, old_box, None)
@@ -78,7 +78,7 @@ fn put_slot<const D: usize, T: Scalar>(bytes: &mut Vec<u8>, bodies: &Bodies<D, T
     if is_live {
         put_box(bytes, bodies.shape(index));
         if bodies.options.report.is_fat() {
-            put_box(bytes, &bodies.boxes[row]);
+            put_box(bytes, &bodies.boxes.now()[row]);
         }
         origin.into_iter().for_each(|origin| put_box(bytes, origin));
         let end = bodies.sweeps.end(index).filter(|_| flags & flag::SWEPT != 0);

@@ -17,7 +17,7 @@ pub const FILL: usize = 12;
 pub const LEAST: usize = 3;
 
 /// Up to 16 boxes, each of a child node or of a body.
-#[derive(Clone, Copy, Debug)]
+#[derive(Copy, Debug)]
 #[repr(align(64))]
 pub struct Node<const D: usize, T> {
     /// By axis and lane; a lane without a box has what changes no bounds.
@@ -30,6 +30,13 @@ pub struct Node<const D: usize, T> {
     pub is_leaf: bool,
     /// Whether the items are leaves.
     pub has_leaves: bool,
+}
+
+// Not derived, as that of boxes.
+impl<const D: usize, T: Copy> Clone for Node<D, T> {
+    fn clone(&self) -> Self {
+        *self
+    }
 }
 
 impl<const D: usize, T: Scalar> Node<D, T> {

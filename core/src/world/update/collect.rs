@@ -26,7 +26,8 @@ pub fn collect_escaped<const D: usize, T: Scalar>(
     escaped.clear();
     let read = bodies.rows_to_scan(bodies.edits.changed().len());
     let scans_all = bodies.scans_all(bodies.edits.changed().len());
-    let Bodies { slots, boxes, previous, edits, .. } = bodies;
+    let Bodies { slots, boxes, edits, .. } = bodies;
+    let (boxes, previous) = (boxes.now(), boxes.previous());
     let scans_all = edits.take_unlisted() || scans_all;
     let changed = edits.changed_mut();
     if scans_all {

@@ -21,14 +21,9 @@ pub fn finish<const D: usize, T: Scalar>(
 ) -> bool {
     // Boxes of bodies that did not change are the same or meaningless.
     let read = bodies.rows_to_scan(bodies.edits.changed().len());
-    let Bodies { boxes, previous, edits, .. } = bodies;
-    let read = if edits.take_unlisted() { previous.len() } else { read };
-    previous[..read].copy_from_slice(&boxes[..read]);
-    if read < previous.len() {
-        for row in edits.changed().iter().map(|&index| index as usize).filter(|&row| row >= read) {
-            previous[row] = boxes[row];
-        }
-    }
+    let Bodies { boxes, edits, .. } = bodies;
+    let read = if edits.take_unlisted() { boxes.len() } else { read };
+    boxes.end_update(read, edits.changed());
     if bodies.rules.finish() | bodies.edits.any_new() {
         for &index in bodies.edits.changed() {
             let rests = is_level_new && bodies.is_static(index);
@@ -77,7 +72,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
             let rests = *flags & (flag::LIVE | AWAKE) == flag::LIVE;
             if rests {
                 *flags |= flag::ASLEEP;
-                fat[row] = boxes[row];
+                fat[row] = boxes.now()[row];
                 sleep.count += 1;
             }
             *flags &= !flag::RECENT;

@@ -40,7 +40,8 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
             let flags = &mut bodies.slots.flags[row];
             let is_grounded = *flags & GROUNDED != 0;
             grounded += usize::from(is_grounded);
-            if is_grounded || !motion.is_fast(&bodies.previous[row], &bodies.boxes[row]) {
+            let (before, now) = (&bodies.boxes.previous()[row], &bodies.boxes.now()[row]);
+            if is_grounded || !motion.is_fast(before, now) {
                 // Only fast ones stay marked.
                 *flags &= !flag::MARKED;
                 slow += usize::from(*flags & flag::FLYING == 0);

@@ -36,7 +36,7 @@ pub fn from_scratch<const D: usize, T: Scalar>(
     if has_tree {
         bodies.list_changed();
     }
-    let all = finder.find(&bodies.boxes, bodies, [flag::LIVE, 0], When::Now, usize::MAX)?;
+    let all = finder.find(bodies.boxes.now(), bodies, [flag::LIVE, 0], When::Now, usize::MAX)?;
     let pairs = all.unwrap_or_default();
     let before = candidates.sorted();
     sorter.reserve(sorted, pairs.len())?;
@@ -51,7 +51,8 @@ pub fn from_scratch<const D: usize, T: Scalar>(
     tracking.policy.note_overlaps(tracking.finder.found);
     tracking.is_fat_stale = true;
     if has_tree {
-        tracking.fat.clone_from(&bodies.boxes);
+        tracking.fat.clear();
+        tracking.fat.extend_from_slice(bodies.boxes.now());
         tracking.note_new_fat(bodies);
     }
     Ok(())

@@ -120,12 +120,13 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     /// Whether the fat AABBs of the bodies that left theirs can be extended, so that candidates are only
     /// added: if most bodies move, and none of these went far.
     fn can_extend(&self, bodies: &Bodies<D, T>) -> bool {
+        let (boxes, previous) = (bodies.boxes.now(), bodies.boxes.previous());
         bodies.edits.changed().len() * 2 > bodies.slots.live
             && bodies.edits.leaving().is_empty()
             && self.scratch.escaped.iter().all(|&index| {
                 let row = index as usize;
                 !bodies.slots.has(index, flag::NEW | flag::REFILTERED)
-                    && !self.motion.is_jump(&bodies.previous[row], &bodies.boxes[row])
+                    && !self.motion.is_jump(&previous[row], &boxes[row])
             })
     }
 
@@ -146,7 +147,8 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
             !bodies.rules.filter(&bodies.slots, **index, When::LastUpdate).allows_none()
         };
         let woken_boxes = woken.iter().filter(may_pair);
-        queries.extend(woken_boxes.map(|&index| (index, bodies.previous[index as usize])));
+        let previous = bodies.boxes.previous();
+        queries.extend(woken_boxes.map(|&index| (index, previous[index as usize])));
         let are_asleep = |index| bodies.slots.has(index, flag::ASLEEP);
         for batch in queries.chunks(if has_tree { BATCH } else { usize::MAX }) {
             let is_found = if has_tree {
@@ -193,18 +195,19 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     #[inline(never)]
     fn test_candidates(&mut self, bodies: &Bodies<D, T>, events: &mut Events, drops: bool) {
         let Self { candidates, scratch, .. } = self;
+        let boxes = bodies.boxes.now();
         let count = candidates.listed().len();
         let are_few = bodies.edits.changed().len() * SELECT <= count;
         if are_few {
             scratch.flag_changed(bodies, true);
-        } else if count * RANDOM_READ > bodies.boxes.len() {
-            preload(&bodies.boxes);
+        } else if count * RANDOM_READ > boxes.len() {
+            preload(boxes);
         }
         let (mut overlap, mut listed) = ([false; CHUNK], [0; CHUNK]);
         for start in (0..count).step_by(CHUNK) {
             let some = start..count.min(start + CHUNK);
             if !are_few {
-                test(&bodies.boxes, candidates.listed(), some.clone(), &mut overlap);
+                test(boxes, candidates.listed(), some.clone(), &mut overlap);
             }
             let found = match (are_few, drops) {
                 (true, _) => scratch.list_changed(candidates, some, &mut listed),
@@ -218,8 +221,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
                     dropped.push(at);
                     continue;
                 }
-                let is_live =
-                    bodies.boxes[a as usize].overlaps_branch_free(&bodies.boxes[b as usize]);
+                let is_live = boxes[a as usize].overlaps_branch_free(&boxes[b as usize]);
                 if candidates.live()[at] != is_live {
                     candidates.set_live(at, is_live);
                     if is_live { &mut events.begun } else { &mut events.ended }.push([a, b]);
@@ -243,18 +245,19 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     fn list_queries(&mut self, bodies: &Bodies<D, T>, extends: bool) -> [usize; 2] {
         let mut jumped = 0;
         let Self { fat, motion, policy, scratch: Scratch { escaped, queries, .. }, .. } = self;
+        let (boxes, previous) = (bodies.boxes.now(), bodies.boxes.previous());
         queries.clear();
         // Spare capacity, as the other list has: steady motion must not allocate.
         queries.reserve(escaped.capacity());
         queries.extend(escaped.iter().map(|&index| {
             let row = index as usize;
             let is_new = bodies.slots.has(index, flag::NEW);
-            let before = if is_new { &bodies.boxes[row] } else { &bodies.previous[row] };
-            jumped += usize::from(motion.is_jump(before, &bodies.boxes[row]));
+            let before = if is_new { &boxes[row] } else { &previous[row] };
+            jumped += usize::from(motion.is_jump(before, &boxes[row]));
             let ahead = if policy.is_tight() || bodies.slots.has(index, flag::FLYING) {
-                bodies.boxes[row]
+                boxes[row]
             } else {
-                motion.alone(index, before, &bodies.boxes[row])
+                motion.alone(index, before, &boxes[row])
             };
             (index, if extends { fat[row].union(&ahead) } else { ahead })
         }));
@@ -321,6 +324,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         most: &mut usize,
     ) -> bool {
         let limit = self.policy.most_candidates(bodies.slots.live);
+        let (boxes, previous) = (bodies.boxes.now(), bodies.boxes.previous());
         let Self { tree, fat, candidates, finder, scratch, .. } = self;
         let Scratch { queries, leaves, found, is_escaped, added, .. } = scratch;
         added.clear();
@@ -346,7 +350,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
                 for &[_, other] in found {
                     black_box(fat[other as usize].min[0]);
                     if !bodies.slots.has(other, flag::ASLEEP) {
-                        black_box(bodies.boxes[other as usize].min[0]);
+                        black_box(boxes[other as usize].min[0]);
                     }
                 }
                 for &[query, other] in found {
@@ -369,12 +373,12 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
                     let [now, before] = if bodies.slots.has(other, flag::ASLEEP) {
                         [&fat[second]; 2]
                     } else {
-                        [&bodies.boxes[second], &bodies.previous[second]]
+                        [&boxes[second], &previous[second]]
                     };
                     let pair = [other.min(index), other.max(index)];
-                    let is_live = bodies.boxes[first].overlaps_branch_free(now);
+                    let is_live = boxes[first].overlaps_branch_free(now);
                     added.push((pair, is_live));
-                    let was_near = || bodies.previous[first].overlaps_branch_free(before);
+                    let was_near = || previous[first].overlaps_branch_free(before);
                     if is_live && !(was_near() && bodies.was_allowed(pair)) {
                         let count = begun.len() + 1;
                         if reserve_for(begun, count).is_err() {

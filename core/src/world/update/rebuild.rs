@@ -62,7 +62,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     /// Lists the live pairs that end. Where the bodies and filters are the same this follows from the
     /// boxes alone.
     fn list_ended(&self, bodies: &Bodies<D, T>, are_same: bool, ended: &mut Vec<[u32; 2]>) {
-        let (candidates, boxes) = (&self.candidates, &bodies.boxes);
+        let (candidates, boxes) = (&self.candidates, bodies.boxes.now());
         let is_apart =
             |[a, b]: [u32; 2]| !boxes[a as usize].overlaps_branch_free(&boxes[b as usize]);
         if are_same {
@@ -80,7 +80,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
 
     /// Lists the live ones of the new candidates that begin, and flags all live ones.
     fn list_begun(&mut self, bodies: &Bodies<D, T>, are_same: bool, begun: &mut Vec<[u32; 2]>) {
-        let (boxes, previous) = (&bodies.boxes, &bodies.previous);
+        let (boxes, previous) = (bodies.boxes.now(), bodies.boxes.previous());
         preload(boxes);
         preload(previous);
         self.candidates.flag_all(begun, |pair| {
@@ -103,7 +103,8 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
     #[inline(never)]
     fn fatten_all(&mut self, bodies: &Bodies<D, T>) -> bool {
         let Self { fat, motion, policy, .. } = self;
-        let Bodies { slots, boxes, previous, edits, .. } = bodies;
+        let Bodies { slots, boxes, edits, .. } = bodies;
+        let (boxes, previous) = (boxes.now(), boxes.previous());
         let changed = edits.changed();
         motion.sample(changed.len(), |at| {
             let index = changed[at];
@@ -147,7 +148,7 @@ impl<const D: usize, T: Scalar> Tracking<D, T> {
         }
         loop {
             if !is_fat {
-                fat.copy_from_slice(&bodies.boxes);
+                fat.copy_from_slice(bodies.boxes.now());
             }
             // A sample may be wrong by a quarter: then all that was found is not given up.
             let most = policy.most_candidates(bodies.slots.live);
@@ -224,7 +225,7 @@ fn have_too_many<const D: usize, T: Scalar>(
 pub fn restore<const D: usize, T: Scalar>(
     bodies: &Bodies<D, T>,
 ) -> Result<Tracking<D, T>, OutOfMemory> {
-    let mut tracking = Tracking { fat: bodies.previous.clone(), ..Tracking::default() };
+    let mut tracking = Tracking { fat: bodies.boxes.previous().to_vec(), ..Tracking::default() };
     let Tracking { fat, candidates, finder, policy, .. } = &mut tracking;
     let known = [flag::LIVE | flag::LEAVING, flag::NEW];
     let pairs = finder.find(fat, bodies, known, When::LastUpdate, usize::MAX)?;
