@@ -1,9 +1,11 @@
-"""Settings of the property tests: no deadline, because the machine may be loaded, and no files left behind. And the
-boxes of the shared scenes."""
+"""Settings of the property tests: no deadline, because the machine may be loaded, and no files left behind. Those of
+NumPy. And the boxes of the shared scenes."""
 
 import subprocess
+from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import settings
 
@@ -11,6 +13,13 @@ settings.register_profile("project", deadline=None, database=None, print_blob=Tr
 settings.load_profile("project")
 
 ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(autouse=True)
+def numpy_raises() -> Iterator[None]:
+    """All tests run as in a program whose NumPy raises: no arithmetic of this package shows."""
+    with np.errstate(all="raise"):
+        yield
 
 
 def write_scenes(folder: Path, *count: str) -> Path:

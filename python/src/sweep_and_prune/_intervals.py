@@ -248,7 +248,7 @@ def coverage(
     def add(pairs: NDArray[Any]) -> None:
         first, other = pairs.T
         low, high = np.maximum(of_a[first, 0], merged[0][other]), np.minimum(of_a[first, 1], merged[1][other])
-        with np.errstate(over="ignore", invalid="ignore"):
+        with np.errstate(all="ignore"):
             shared = high - low
             shared[low == high] = np.zeros((), shared.dtype)  # also for infinite ends, whose difference is NaN
             np.add.at(covered, first, shared)
@@ -519,7 +519,7 @@ def _distances(corners: list[Values], pairs: NDArray[np.int64]) -> Values:
     of_axes = []
     for axis in range(half):
         (low_a, high_a), (low_b, high_b) = _ends_of(corners, pairs, axis)
-        with np.errstate(over="ignore", invalid="ignore"):
+        with np.errstate(all="ignore"):
             gaps = np.maximum(low_a - high_b, low_b - high_a)
         zero = np.zeros((), gaps.dtype)
         of_axes.append(np.where(gaps > zero, gaps, zero))  # also for infinite ends, whose difference is NaN

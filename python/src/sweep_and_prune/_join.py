@@ -186,8 +186,9 @@ def join(
             raise ValueError("closed and format are for boxes; geometries have neither")
         if left_columns is not None or right_columns is not None:
             raise ValueError("left_columns and right_columns are for boxes without geometries")
-        sides = [_side(np.asarray(frame.geometry.array, object)) for frame in (left, right)]
-        found = _of_geometries(sides, predicate, distance, groups, threads, progress, wrap)
+        with np.errstate(all="ignore"):  # of shapely's numbers, too
+            sides = [_side(np.asarray(frame.geometry.array, object)) for frame in (left, right)]
+            found = _of_geometries(sides, predicate, distance, groups, threads, progress, wrap)
         shapes = [side.shapes for side in sides]
 
         def measured(rows: Indices) -> Overlaps:
@@ -385,17 +386,18 @@ def _measured_geometries(shapes: list[NDArray[Any]], rows: Indices, wrap: float 
     import shapely
 
     first, second = (of_side[at] for of_side, at in zip(shapes, rows.T))
-    areas = [np.asarray(shapely.area(of_side), np.float64) for of_side in shapes]
-    of_a, of_b = areas[0][rows[:, 0]], areas[1][rows[:, 1]]
-    turns = [0.0] if wrap is None else _turns([_side(first), _side(second)], None, checked_wrap(wrap))
-    shared = np.zeros(len(rows))
-    try:
-        for turn in turns:
-            moved = shapely.transform(second, lambda points, turn=turn: points + [turn, 0]) if turn else second
-            shared += shapely.area(shapely.intersection(first, moved))
-    except shapely.errors.GEOSException as error:
-        raise ValueError(f"{_first_invalid(shapes, rows)} ({error}): pass frames with geometry.make_valid()") from None
     with np.errstate(all="ignore"):
+        areas = [np.asarray(shapely.area(of_side), np.float64) for of_side in shapes]
+        of_a, of_b = areas[0][rows[:, 0]], areas[1][rows[:, 1]]
+        turns = [0.0] if wrap is None else _turns([_side(first), _side(second)], None, checked_wrap(wrap))
+        shared = np.zeros(len(rows))
+        try:
+            for turn in turns:
+                moved = shapely.transform(second, lambda points, turn=turn: points + [turn, 0]) if turn else second
+                shared += shapely.area(shapely.intersection(first, moved))
+        except shapely.errors.GEOSException as error:
+            message = f"{_first_invalid(shapes, rows)} ({error}): pass frames with geometry.make_valid()"
+            raise ValueError(message) from None
         return Overlaps(shared, shared / of_a, shared / of_b, shared / (of_a + of_b - shared))
 
 
@@ -548,12 +550,11 @@ def _near(
     a: NDArray[np.complex128], b: NDArray[np.complex128], limits: NDArray[np.float64]
 ) -> tuple[NDArray[np.bool_], Indices]:
     """Which points are certainly within a distance, and the rows of those for which rounding may decide."""
-    with np.errstate(over="ignore", invalid="ignore"):
-        apart = a - b
-        squares = apart.real**2 + apart.imag**2
-        within = limits**2
-        kept = (squares < within * (1 - _ROUNDING)) & (limits > 0)
-        return kept, np.flatnonzero(~kept & ~(squares > within * (1 + _ROUNDING)))
+    apart = a - b
+    squares = apart.real**2 + apart.imag**2
+    within = limits**2
+    kept = (squares < within * (1 - _ROUNDING)) & (limits > 0)
+    return kept, np.flatnonzero(~kept & ~(squares > within * (1 + _ROUNDING)))
 
 
 def _none_of(first: Indices) -> tuple[NDArray[np.bool_], Indices]:
@@ -584,8 +585,12 @@ def _on_threads(test: Callable[[slice], NDArray[np.bool_]], of_a: Indices, threa
         return np.concatenate([test(block) for block in rows])
     from concurrent.futures import ThreadPoolExecutor  # here, since it takes half of the import of this package
 
+    def quiet(block: slice) -> NDArray[np.bool_]:
+        with np.errstate(all="ignore"):  # which each thread has for itself
+            return test(block)
+
     with ThreadPoolExecutor(number) as pool:
-        return np.concatenate(list(pool.map(test, rows)))
+        return np.concatenate(list(pool.map(quiet, rows)))
 
 
 def _extended(bounds: NDArray[np.float64], distances: NDArray[np.float64]) -> NDArray[np.float64]:

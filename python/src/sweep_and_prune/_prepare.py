@@ -180,7 +180,7 @@ def prepare(
         return _on_circle(arrays, names, kept, lengths, of_group, is_closed, margin, checked_wrap(wrap))
     is_all = all(rows is None for rows in kept) and are_grouped
     # Most often, all intervals have a length: then none is inverted or empty.
-    with np.errstate(invalid="ignore"):
+    with np.errstate(all="ignore"):
         have_length = not is_closed and all(bool((low < high).all()) for array in arrays for low, high in _sides(array))
     are_as_passed = is_float and is_closed and is_all and not has_margin and not (fold and by is not None)
     if not (have_length or are_as_passed):
@@ -495,7 +495,7 @@ def _is_empty(array: NDArray[Any]) -> NDArray[np.bool_]:
 
 def refuse_inverted(array: NDArray[Any], name: str, kept: Rows, is_size: bool = False) -> None:
     half = array.shape[1] // 2
-    with np.errstate(invalid="ignore"):  # Python's numbers may have a NaN among them
+    with np.errstate(all="ignore"):  # Python's numbers may have a NaN among them
         if all(bool((low <= high).all()) for low, high in _sides(array)):
             return
         invalid = ~np.asarray(array[:, :half] <= array[:, half:], bool)

@@ -88,7 +88,7 @@ def cut(boxes: Floats, reach: Floats, wrap: float) -> tuple[Floats, NDArray[np.i
 
 def _place(numbers: Floats, wrap: float) -> Floats:
     """The place on the circle, from `-wrap / 2` up to and without `wrap / 2`. Exact."""
-    with np.errstate(invalid="ignore"):
+    with np.errstate(all="ignore"):
         place: Floats = np.fmod(numbers, numbers.dtype.type(wrap))
         place[place >= wrap / 2] -= wrap
         place[place < -wrap / 2] += wrap
@@ -97,7 +97,7 @@ def _place(numbers: Floats, wrap: float) -> Floats:
 
 def _is_as_long(low: Floats, high: Floats, wrap: float) -> NDArray[np.bool_]:
     """Whether `high - low >= wrap`, exactly: the error of the rounded difference decides where that equals `wrap`."""
-    with np.errstate(invalid="ignore", over="ignore"):
+    with np.errstate(all="ignore"):
         difference = high - low
         rest = difference - high
         error = (high - (difference - rest)) - (low + rest)
@@ -160,6 +160,6 @@ def _arc(ends: NDArray[Any], wrap: float) -> tuple[NDArray[np.float64], NDArray[
 def length_on_circle(low: NDArray[Any], high: NDArray[Any], wrap: float) -> NDArray[np.float64]:
     """How long boxes are on the circle, at most all of it."""
     ends = in_one_turn(np.stack([low, high], axis=1).astype(np.float64), wrap)
-    with np.errstate(invalid="ignore"):
+    with np.errstate(all="ignore"):
         length = ends[:, 1] - ends[:, 0]
     return np.asarray(np.minimum(np.where(length < 0, length + wrap, length), wrap))

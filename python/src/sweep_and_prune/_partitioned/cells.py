@@ -178,7 +178,7 @@ def _best_split(boxes: Floats, wanted: int) -> tuple[int, float] | None:
         if len(load) == 0 or load.min() == np.inf:
             continue
         # How many boxes a split cuts, smoothly: a small sample would say 0 on every axis.
-        with np.errstate(invalid="ignore", over="ignore"):
+        with np.errstate(all="ignore"):
             extent = high[-1 - number // 20] - low[number // 20]
             widths = boxes[:, axis + half] - boxes[:, axis]
             cut = np.minimum(widths / extent, 1).mean() if extent > 0 else 1.0
