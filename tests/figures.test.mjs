@@ -18,7 +18,16 @@ function table(text, heading) {
   return rows.slice(2).map((row) => row.split("|").slice(1, -1).map((cell) => cell.trim()));
 }
 
-const rust = read("bench/RESULTS.md");
+/** The results in Rust of the machine that README.md names. */
+function resultsOfReadme() {
+  const [, machine, date] = /from raw boxes to stored pairs\. (.+?), \d+ cores, (\d{4}-\d\d-\d\d)/.exec(read("README.md")) ?? [];
+  const heading = `\n## ${machine}, ${date}\n`;
+  const [, results] = read("bench/RESULTS.md").split(heading);
+  assert.ok(results, `bench/RESULTS.md has no results of the machine and day of README.md:${heading}`);
+  return results;
+}
+
+const rust = resultsOfReadme();
 const javascript = read("bench/js/RESULTS.md");
 
 const uniform = new Map(

@@ -21,7 +21,7 @@ pub use format::time;
 
 /// Reads every record in the folder and writes `RESULTS.md` beside it and the plots into it. Of
 /// each machine only the newest record is shown. With the root of the repository, also writes what its
-/// READMEs show, of the newest of all.
+/// READMEs show, of the machine on which most was measured.
 pub fn write(results: &Path, readmes: Option<&Path>) -> Result<()> {
     let newest = newest(results)?;
     anyhow::ensure!(!newest.is_empty(), "there are no results in {}", results.display());
@@ -37,8 +37,8 @@ pub fn write(results: &Path, readmes: Option<&Path>) -> Result<()> {
     }
     let report = results.parent().unwrap_or(results).join("RESULTS.md");
     std::fs::write(&report, text).with_context(|| format!("writing {}", report.display()))?;
-    let last = newest.iter().max_by(|(_, a), (_, b)| a.date.cmp(&b.date));
-    if let (Some((_, record)), Some(root)) = (last, readmes) {
+    let fullest = newest.iter().max_by_key(|(_, record)| (record.measured(), &record.date));
+    if let (Some((_, record)), Some(root)) = (fullest, readmes) {
         readme::write(record, root)?;
     }
     println!("Written: {} and the plots in {}", report.display(), results.display());

@@ -15,14 +15,14 @@ const KEPT = [
   { kind: "javascript", folder: "bench/js/results/" },
 ] as const;
 
-/** The runs that were kept. */
+/** The runs that were kept, first those in which most was measured, of these the newest. */
 function runs(): Run[] {
   return KEPT.flatMap(({ kind, folder }) => {
     const path = new URL(folder, root);
     const names = existsSync(path) ? readdirSync(path).filter((file) => file.endsWith(".json")) : [];
-    // The newest first: the date is at the end of the name.
-    names.sort((a, b) => b.slice(-15).localeCompare(a.slice(-15)));
-    return names.map((file): Run => ({ kind, ...(JSON.parse(readFileSync(new URL(file, path), "utf8")) as Recorded) }));
+    const kept = names.map((file): Run => ({ kind, ...(JSON.parse(readFileSync(new URL(file, path), "utf8")) as Recorded) }));
+    const measured = ({ cases }: Run) => cases?.length ?? 0;
+    return kept.sort((a, b) => measured(b) - measured(a) || b.date.localeCompare(a.date));
   });
 }
 

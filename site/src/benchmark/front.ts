@@ -1,5 +1,5 @@
 // What the benchmark page says first, written when the site is built: one sentence, and sweep-and-prune beside five
-// alternatives that many people know, in each language, from the newest recorded runs.
+// alternatives that many people know, in each language, from the recorded run in which most was measured.
 
 import { REPOSITORY } from "../shell/pages.ts";
 import { bars } from "./bars.ts";
