@@ -37,12 +37,17 @@ pub fn write(results: &Path, readmes: Option<&Path>) -> Result<()> {
     }
     let report = results.parent().unwrap_or(results).join("RESULTS.md");
     std::fs::write(&report, text).with_context(|| format!("writing {}", report.display()))?;
-    let fullest = newest.iter().max_by_key(|(_, record)| (record.measured(), &record.date));
-    if let (Some((_, record)), Some(root)) = (fullest, readmes) {
+    if let (Some(record), Some(root)) = (fullest(&newest), readmes) {
         readme::write(record, root)?;
     }
     println!("Written: {} and the plots in {}", report.display(), results.display());
     Ok(())
+}
+
+/// The record in which most was measured, of these the newest.
+fn fullest(records: &[(PathBuf, Record)]) -> Option<&Record> {
+    let records = records.iter().map(|(_, record)| record);
+    records.max_by_key(|record| (record.measured(), &record.date))
 }
 
 /// Removes the plots of earlier reports.

@@ -220,10 +220,10 @@ mod tests {
 
     /// The figures in the READMEs are those of the results that are kept.
     #[test]
-    fn the_tables_of_the_readmes_are_those_of_the_newest_results() {
+    fn the_tables_of_the_readmes_are_those_of_the_fullest_results() {
         let bench = Path::new(env!("CARGO_MANIFEST_DIR"));
         let newest = super::super::newest(&bench.join("results")).unwrap();
-        let table = table(&newest.last().unwrap().1).unwrap();
+        let table = table(super::super::fullest(&newest).unwrap()).unwrap();
         for readme in ["../README.md", "../core/README.md"] {
             let text = std::fs::read_to_string(bench.join(readme)).unwrap();
             assert_eq!(replaced(&text, &table).unwrap(), text, "{readme}: run bench/report");
