@@ -262,21 +262,35 @@ def test_distances_names_indices_and_groups_are_those_of_geopandas() -> None:
         check_same(left, right[:0], how)
 
 
-def test_distances_are_rounded_as_by_shapely() -> None:
+def check_distances(points: Any, distance: Any) -> int:
+    """Compares the pairs of points that are so near with shapely's, and counts them."""
     geopandas, shapely = pytest.importorskip("geopandas"), pytest.importorskip("shapely")
-    ids = np.arange(1000)
-    # On an axis only subtractions round; elsewhere the square of the distance and its root do, too, and near 0 by far.
-    for scale in ([10, 0], [10, 10], [3e-162, 3e-162]):
+    ids = np.arange(points.shape[1])
+    left, right = (geopandas.GeoDataFrame({"id": ids}, geometry=geopandas.points_from_xy(*of.T)) for of in points)
+    with np.errstate(under="ignore"):
+        is_within = shapely.dwithin(left.geometry.array, right.geometry.array, distance)
+    found = sap.join(left, right, "inner", "dwithin", distance=distance, by="id")
+    assert found.id.tolist() == ids[is_within].tolist()
+    return int(is_within.sum())
+
+
+def test_distances_are_rounded_as_by_shapely() -> None:
+    geopandas = pytest.importorskip("geopandas")
+    # On an axis only subtractions round; elsewhere the square of the distance and its root do, too.
+    for scale in ([10, 0], [10, 10]):
         points = np.random.default_rng(1).random((2, 1000, 2)) * scale
-        left, right = (geopandas.GeoDataFrame({"id": ids}, geometry=geopandas.points_from_xy(*of.T)) for of in points)
-        with np.errstate(under="ignore"):
-            distance = np.hypot(*(points[0] - points[1]).T)
-            is_within = shapely.dwithin(left.geometry.array, right.geometry.array, distance)
-        found = sap.join(left, right, "inner", "dwithin", distance=distance, by="id")
-        assert found.id.tolist() == ids[is_within].tolist()
-        assert is_within.sum() > 700
+        distance = np.sqrt(((points[0] - points[1]) ** 2).sum(axis=1))
+        assert check_distances(points, distance) > 900
+    left = geopandas.GeoDataFrame({"id": np.arange(1000)}, geometry=geopandas.points_from_xy(*points[0].T))
     for distance, number in ((0, 1000), (1e-200, 1000), (1e200, 10**6)):
         assert len(sap.join(left, left, "inner", "dwithin", distance=distance)) == number, distance
+
+
+def test_distances_near_0_whose_squares_are_rounded_by_far_are_those_of_shapely() -> None:
+    points = np.random.default_rng(1).random((2, 1000, 2)) * 3e-162
+    with np.errstate(under="ignore"):
+        distance = np.hypot(*(points[0] - points[1]).T)
+    assert 700 < check_distances(points, distance) < 1000
 
 
 def test_blocks_and_threads_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
