@@ -191,11 +191,6 @@ impl Case {
 }
 
 impl Record {
-    /// How many cases were measured.
-    pub fn measured(&self) -> usize {
-        [&self.cases, &self.worlds, &self.statics, &self.intervals].map(Vec::len).iter().sum()
-    }
-
     /// Reads a file of results.
     pub fn read(path: &Path) -> Result<Self> {
         let text = std::fs::read(path).with_context(|| format!("reading {}", path.display()))?;

@@ -44,10 +44,10 @@ pub fn write(results: &Path, readmes: Option<&Path>) -> Result<()> {
     Ok(())
 }
 
-/// The record in which most was measured, of these the newest.
+/// The record that has most cases, of these the newest. The benchmark page begins with it, too.
 fn fullest(records: &[(PathBuf, Record)]) -> Option<&Record> {
     let records = records.iter().map(|(_, record)| record);
-    records.max_by_key(|record| (record.measured(), &record.date))
+    records.max_by_key(|record| (record.cases.len(), &record.date))
 }
 
 /// Removes the plots of earlier reports.
